@@ -11,19 +11,19 @@
 
 namespace tessera::projection {
 
-/// A cell as one view sees it, all that a rasterizer on a device (gl_rasterizer.hpp) reads of it: what travels to the
-/// compositor whose device it is, byte by byte.
+/// A cell in one view, with all data that a rasterizer on a device (gl_rasterizer.hpp) reads: sent, byte for byte, to
+/// the compositor with the device.
 ///
 /// Holds   corners in canonical order (PreparedMesh), each in front of the eye and inside the clipping range; x and y
-///         are whole multiples of 2^-32 pixel, of size `reach` at most: where the tie rule sees the corner
-///         (line_of_sight()), so that differences of them are exact in doubles and products in 128-bit integers.
+///         are integer multiples of 2^-32 pixel, at most `reach` in magnitude: the position of the corner for the tie
+///         rule (line_of_sight()), so that differences are exact in doubles and products in 128-bit integers.
 struct CellRecord {
   struct Corner {
     double x, y;    ///< pixel position
     double depth;   ///< planar, world units
-    double scalar;  ///< in the field's own unit; of cell data the same at all four
+    double scalar;  ///< in the field's own unit; for cell data, the same at all four
   };
-  /// Pixels: eight times the largest picture's 2^16 would still do; beyond, a corner is as good as beside the eye.
+  /// In pixels. Eight times the largest image's 2^16 would also work; corners beyond are treated as in the eye plane.
   static constexpr double reach = 0x1p17;
 
   Corner corner[4];
@@ -31,20 +31,20 @@ struct CellRecord {
 };
 static_assert(sizeof(CellRecord) == 136);
 
-/// Cell `tet` of the frame, `global_tet` in the whole mesh. None where a device cannot do it: a corner behind or beside
-/// the eye or farther away than CellRecord::reach, or outside the clipping range.
+/// Cell `tet` of the frame, `global_tet` in the whole mesh. Empty if a device cannot rasterize it: a corner is behind
+/// or in the eye plane, farther away than CellRecord::reach, or outside the clipping range.
 std::optional<CellRecord> cell_record(const ProjectedMesh& projected, std::uint32_t tet, std::uint64_t global_tet);
 
-/// What a device needs to know to make segments of cells.
+/// The parameters with which a device makes segments of cells.
 struct CellUnits {
-  double half_width, half_height;     ///< of the picture, pixels
+  double half_width, half_height;     ///< of the image, in pixels
   double pixels_per_tangent;          ///< PixelSpace's: 0 is an orthographic view
   scene::Lattice lattice;             ///< units of lengths (depth_unit) and scalars
-  double key_origin, keys_per_depth;  ///< of the keys of depths: key = (planar depth - origin) * keys_per_depth
+  double key_origin, keys_per_depth;  ///< of depth keys: key = (planar depth - origin) * keys_per_depth
 };
 
-/// The same segments by rasterize_planes(), for compositors whose device failed under way: `take` gets them batch by
-/// batch, with the cells of the batch that their tet numbers count. Scalars are in the field's own unit.
+/// The same segments from rasterize_planes(), for compositors whose device has failed: `take` receives them in batches,
+/// with the batch's cells, to which their tet numbers refer. Scalars are in the field's own unit.
 void rasterize_records(std::span<const CellRecord> cells, const scene::PixelRect& rect, double pixels_per_tangent,
                        const std::function<void(const RaySegments&, std::span<const CellRecord>)>& take);
 

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double above(double v) { return std::nextafter(v, infinity); }
 double below(double v) { return std::nextafter(v, -infinity); }
 
-/// Doubles numbered in ascending order.
+/// The index of a double in ascending order.
 std::int64_t number_of(double v) {
   const auto bits = std::bit_cast<std::int64_t>(v);
   return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;
@@ -25,7 +25,7 @@ double numbered(std::int64_t n) {
   return std::bit_cast<double>(n >= 0 ? n : std::numeric_limits<std::int64_t>::min() - n);
 }
 
-/// The last double of [low, high] at which `holds`, which turns from true at `low` to false at `high` once.
+/// The last double of [low, high] at which `holds`, which changes once, from true at `low` to false at `high`.
 template <class Predicate>
 double last_where(double low, double high, Predicate holds) {
   std::int64_t yes = number_of(low), no = number_of(high);
@@ -62,12 +62,12 @@ ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emi
     if (i == knots.size()) break;
     const scene::Knot& next = knots[i];
     const double low = above(at.value), high = below(next.value);
-    if (low > high) continue;  // neighbours: no double lies between
+    if (low > high) continue;  // neighbours: there is no double between them
     if (!shows(at) && !shows(next)) {
       add(low, high, true);
     } else if (!shows(at) && clear_at(low)) {
       add(low, clear_at(high) ? high : last_where(low, high, clear_at), true);
-    } else if (shows(at) && clear_at(high)) {  // even if `next` shows: rounding loses one that is 1e-16 of `at`
+    } else if (shows(at) && clear_at(high)) {  // also if `next` shows: rounding loses 1e-16 of `at`'s extinction
       add(clear_at(low) ? low : above(last_where(low, high, [&](double s) { return !clear_at(s); })), high, true);
     }
   }

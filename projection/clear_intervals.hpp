@@ -8,28 +8,28 @@
 
 namespace tessera::projection {
 
-/// The scalars at which a transfer function shows nothing, as closed intervals between two doubles, so that a cell's
-/// visibility is a few comparisons: a cell is invisible if one interval holds all of its scalars.
+/// The scalars at which a transfer function is invisible, as closed intervals between two doubles, so that a cell's
+/// visibility takes a few comparisons: a cell is invisible if one interval contains all of its scalars.
 ///
-/// Says what TransferFunction::visible says, to the last bit: ends are where its interpolation, rounding included,
-/// turns to zero, and intervals do not join over a step that shows only from below.
+/// Agrees with TransferFunction::visible to the last bit: an interval ends where the interpolation, with its rounding,
+/// becomes zero, and intervals are not joined across a step that is visible only from below.
 class ClearIntervals {
  public:
   struct Interval {
-    double low, high;  ///< both inside; may be infinite
+    double low, high;  ///< both inclusive; may be infinite
   };
 
-  /// None: everything shows.
+  /// No intervals: everything is visible.
   ClearIntervals() = default;
-  /// `boundaries`, ascending: no interval holds both such a value and what lies below it, so that cells in which the
-  /// field crosses one show.
+  /// `boundaries`: ascending. No interval contains both a boundary and values below it, so that cells in which the
+  /// field crosses a boundary are visible.
   ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction,
                  std::span<const double> boundaries = {});
 
-  /// Those that have a value in common with [low, high], ascending.
+  /// The intervals that intersect [low, high], ascending.
   [[nodiscard]] std::span<const Interval> meeting(double low, double high) const;
 
-  /// Whether nothing shows anywhere in [low, high].
+  /// Whether nothing in [low, high] is visible.
   [[nodiscard]] bool hold(double low, double high) const;
 
  private:

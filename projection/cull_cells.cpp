@@ -40,7 +40,7 @@ HWY_INLINE CullVertex cull_vertex(const PixelVertex& v, double scalar, double de
   out.y = static_cast<float>(v.y / v.w);
   const double size = (v.depth < 0 ? -v.depth : v.depth) + (depth_origin < 0 ? -depth_origin : depth_origin);
   const double depth = (v.depth - depth_origin) - 4e-16 * size;
-  // What rounding to float may add is taken off before.
+  // Subtract in advance what rounding to float may add.
   const double lower = depth - (depth < 0 ? -depth : depth) * 0x1p-23 - 0x1p-149;
   out.depth = static_cast<float>(lower < 3e38 ? lower : 3e38);
   out.scalar = static_cast<float>(scalar);
@@ -84,13 +84,13 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
 
 HWY_INLINE std::uint64_t bits_of(MF mask) { return lane_bits(mask); }
 
-/// Interval of whole numbers [low, high) of pixels whose centres lie in [least, most], and whether floats are sure.
+/// Range [low, high) of pixels whose centres are in [least, most], and whether floats decide it with certainty.
 struct Covered {
   VF low, high;
-  MF empty, sure;  ///< empty: certainly
+  MF empty, sure;  ///< empty: with certainty
 };
 
-/// Ten times the rounding of a float pixel position and of what is added to it here, and of footprint()'s slack.
+/// Ten times the rounding error of a float pixel position, of what is added to it here, and of footprint()'s slack.
 HWY_INLINE VF slack_of(VF pixel) { return MulAdd(Abs(pixel), Set(DF(), 0x1p-22f), Set(DF(), 1e-6f)); }
 
 HWY_INLINE Covered covered(VF least, VF most, VF side) {
@@ -105,7 +105,7 @@ HWY_INLINE Covered covered(VF least, VF most, VF side) {
   return {first, last, first >= last, And(first_sure, last_sure)};
 }
 
-/// Boxes of `count` cells, a cell after the other: smallest and largest of x, y, depth, scalar.
+/// Boxes of `count` cells, one cell at a time: smallest and largest x, y, depth and scalar.
 HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std::size_t count, float* low,
                          float* high) {
   const hn::FixedTag<float, 4> d;
@@ -117,7 +117,7 @@ HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std
   }
 }
 
-/// A vector of cells.
+/// The boxes of a vector of cells.
 struct Boxes {
   VF x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
 
@@ -128,7 +128,7 @@ struct Boxes {
   }
 };
 
-/// Cells of which the transfer function shows nothing: certainly, perhaps.
+/// Whether the transfer function makes cells invisible: with certainty, or possibly.
 struct Hidden {
   MF surely, maybe;
 
@@ -142,14 +142,14 @@ struct Hidden {
   }
 };
 
-/// Where cells lie against the clipping range and the window.
+/// The position of cells relative to the clipping range and the window.
 struct Placed {
   Covered columns, rows;
   MF too_near, too_far, in_depth, empty, covers, tame, inside, outside;
 
   HWY_INLINE Placed(const CullView& view, const Boxes& b) {
     const DF d;
-    // The farthest that a vertex of this CullVertex::depth may lie.
+    // The largest depth of a vertex with this CullVertex::depth.
     const auto at_most = [&](VF v) HWY_ATTR { return MulAdd(Abs(v), Set(d, 4e-7f), v) + Set(d, view.depth_slack); };
     too_near = at_most(b.depth_high) < Set(d, view.near_low);
     too_far = b.depth_low > Set(d, view.far_high);
@@ -157,7 +157,7 @@ struct Placed {
 
     const VF width = Set(d, view.width), height = Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
-    // A sum, which is no number where one of them is none.
+    // A sum, which is NaN if one of them is.
     const VF widest = Abs(b.x_low) + Abs(b.x_high) + (Abs(b.y_low) + Abs(b.y_high));
     tame = widest < Set(d, 1e30f);
     empty = Or(columns.empty, rows.empty);
@@ -171,11 +171,11 @@ struct Placed {
   }
 };
 
-/// Writes the places of cells with these boxes of pixels; returns which of them lie in one tile.
+/// Writes the places of cells with these boxes of pixels; returns the cells that are in one tile.
 HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed, std::uint32_t* places) {
   const DF d;
   const DI di;
-  // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
+  // Integers up to 65536 plus a half, divided by the tile size: the error of floats is less than half a pixel.
   const VF inverse = Set(d, view.inverse_tile_size), half = Set(d, 0.5f);
   const auto tile = [&](VF pixel) HWY_ATTR { return Floor(pixel * inverse); };
   const VF column0 = tile(placed.columns.low + half), column1 = tile(placed.columns.high - half);
@@ -205,7 +205,7 @@ CulledBlock cull(const CullView& view, const CellBlock& block, std::uint32_t* pl
 
   const DF d;
   const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t t = count; t < (count + lanes - 1) / lanes * lanes; ++t) {  // any numbers
+  for (std::size_t t = count; t < (count + lanes - 1) / lanes * lanes; ++t) {  // padding
     for (std::size_t i = 0; i < 4; ++i) low[4 * t + i] = high[4 * t + i] = 0;
     scalars[t] = 0;
   }
@@ -269,7 +269,7 @@ ClearFloats clear_floats(const ClearIntervals::Interval& interval, bool exact) {
     const float low = not_below(interval.low), high = not_above(interval.high);
     return {low, high, low, high};
   }
-  // Rounding keeps order: s >= low makes float(s) >= float(low), and float(s) > float(low) comes from s > low only.
+  // Rounding is monotonic: s >= low implies float(s) >= float(low), and float(s) > float(low) implies s > low.
   const auto low = static_cast<float>(interval.low), high = static_cast<float>(interval.high);
   return {std::isinf(interval.low) ? low : std::nextafter(low, infinity),
           std::isinf(interval.high) ? high : std::nextafter(high, -infinity), low, high};

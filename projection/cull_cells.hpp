@@ -9,19 +9,20 @@
 #include "projection/pixel_space.hpp"
 #include "scene/tet_mesh.hpp"
 
-/// The kernel of culling, 64 cells at a time on SIMD lanes: which cells are seen, in which tiles and how deep.
+/// The kernel of culling, 64 cells at a time on SIMD lanes: which cells are visible, in which tiles, and at which
+/// depth.
 ///
-/// It works on float copies of the vertices, 16 bytes each, so that the box of a cell in pixels, depth and scalar is
-/// four loads and six 128-bit instructions. What floats cannot decide with certainty (a box that ends within rounding
-/// of a pixel centre, one cell in 500 of a picture of 1024 pixels; cells at the near plane, at the window's edge, at a
-/// knot) is left to the caller as unsure, who asks the doubles. So the outcome is that of double precision, cell by
-/// cell.
+/// It uses float copies of the vertices, 16 bytes each, so that the box of a cell in pixels, depth and scalar takes
+/// four loads and six 128-bit instructions. Cells for which floats are not certain are returned as `unsure`, and the
+/// caller decides them in double precision: a box that ends within rounding of a pixel centre (one cell in 500 of an
+/// image of 1024 pixels), cells at the near plane, at the window's edge, or at a knot. So the result is that of double
+/// precision for every cell.
 namespace tessera::projection {
 
-/// A vertex as culling sees it.
+/// A vertex for culling.
 struct CullVertex {
-  float x, y;    ///< pixels; meaningless where w <= 0
-  float depth;   ///< behind the depth origin, never above the exact one
+  float x, y;    ///< pixels; undefined if w <= 0
+  float depth;   ///< relative to the depth origin, never greater than the exact depth
   float scalar;  ///< rounded to nearest; 0 for cell data
 };
 static_assert(sizeof(CullVertex) == 16);
@@ -29,53 +30,52 @@ static_assert(sizeof(CullVertex) == 16);
 /// The smallest depth of any vertex; the largest double if there are none.
 double smallest_depth(std::span<const PixelVertex> vertices);
 
-/// Vertex v from vertices[v] and scalars[v]; `scalars` is empty for cell data.
+/// Sets vertex v from vertices[v] and scalars[v]; `scalars` is empty for cell data.
 void make_cull_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars, double depth_origin,
                         CullVertex* out);
 
-/// Bounds of a clear interval as floats: a cell whose scalars, rounded to float, lie in [sure_low, sure_high] is
-/// invisible; one whose scalars do not lie in [maybe_low, maybe_high] is not hidden by this interval.
+/// Bounds of a clear interval as floats: a cell whose scalars, rounded to float, are in [sure_low, sure_high] is
+/// invisible; one whose scalars are not in [maybe_low, maybe_high] is not hidden by this interval.
 struct ClearFloats {
   float sure_low, sure_high, maybe_low, maybe_high;
 };
 
-/// `exact`: scalars are floats already, so that both bounds agree and nothing is unsure.
+/// `exact`: scalars are representable as float, so that both pairs of bounds are equal and nothing is unsure.
 ClearFloats clear_floats(const ClearIntervals::Interval& interval, bool exact);
 
-/// A frame as the kernel wants it.
+/// The frame data of the kernel.
 struct CullView {
   CullView(double near_depth, double far_depth, double depth_origin, scene::ImageSize image, int tile_size);
 
-  bool
-      nothing_sure;  ///< depths beyond what floats hold, or no numbers left for places: ask the doubles about all cells
-  float near_low, near_high, far_low, far_high;  ///< around near and far depth, relative to the origin
-  float depth_slack;                             ///< how much farther than CullVertex::depth at depth 0 a vertex may be
+  bool nothing_sure;  ///< depths beyond the range of float, or too many tiles for places: all cells are unsure
+  float near_low, near_high, far_low, far_high;  ///< bounds of near and far depth, relative to the origin
+  float depth_slack;                             ///< how much a vertex may exceed its CullVertex::depth, at depth 0
   float width, height;
   float inverse_tile_size, columns;
 };
 
-/// Tiles that a cell's box meets, in 32 bits: the upper left one's number in bits 0..23, how many columns and rows the
-/// box has beyond that tile's in bits 24..27 and 28..31 (0 to 14). Larger boxes, and those of cells that cross the eye
-/// plane, are `wide_place`: ask footprint().
+/// The tiles that a cell's box intersects, in 32 bits: the number of the upper left one in bits 0..23, the number of
+/// further columns and rows in bits 24..27 and 28..31 (0 to 14). Larger boxes, and those of cells that cross the eye
+/// plane, are `wide_place`: use footprint().
 constexpr std::uint32_t wide_place = 0xff000000u;
 constexpr int largest_place_span = 14;
 constexpr std::size_t most_places = std::size_t{1} << 24;
 
-/// What became of 64 cells, a bit each: at most one of the first five.
+/// The results for 64 cells, one bit each: at most one of the first five is set.
 struct CulledBlock {
   std::uint64_t projected = 0, invisible = 0, outside_view = 0, between_pixels = 0;
   std::uint64_t unsure = 0;
-  std::uint64_t in_one_tile = 0;  ///< projected, and the box meets one tile alone: the place is its number
+  std::uint64_t in_one_tile = 0;  ///< projected, and the box is in a single tile: the place is its number
 };
 
 constexpr std::size_t cull_block_cells = 64;
 
-/// At most 64 neighbouring cells of a mesh.
+/// At most 64 consecutive cells of a mesh.
 struct CellBlock {
-  const CullVertex* vertices;  ///< all of the mesh
+  const CullVertex* vertices;  ///< all vertices of the mesh
   std::span<const scene::Tet> tets;
-  const double* cell_scalars;          ///< theirs; null for point data
-  std::span<const ClearFloats> clear;  ///< the clear intervals that have values in common with these cells' scalars
+  const double* cell_scalars;          ///< one per cell; null for point data
+  std::span<const ClearFloats> clear;  ///< the clear intervals that intersect the range of these cells' scalars
 };
 
 /// Culls a block. Writes the places and near depths of projected cells; both arrays have room for 64.

@@ -6,28 +6,28 @@
 
 namespace tessera::projection {
 
-/// Which cells' depths the lattice rasterizer rounds so that it could show; double precision, which rounds to the
-/// nearest step, takes these. An error of depth matters by what a ray gets on the way: `light_per_step`, extinction
-/// times length, so a wide perspective, whose rays go far in a little depth, multiplies it.
+/// Selects the cells whose depths the lattice rasterizer would round visibly; these are rasterized in double precision,
+/// which rounds to the nearest step. The effect of a depth error is proportional to `light_per_step`, extinction times
+/// length. A wide perspective, whose rays travel far per unit of depth, multiplies it.
 ///
-/// Planes err by some steps; under perspective a quotient of floats errs besides, by a part of what the cell spans in
-/// depth, though a ray's way through a thin cell may be a hundred-thousandth of that.
-///   - One crossing may err by most_error, whatever the cell.
-///   - Crossings that a ray meets one after the other err at random. It sees about as many of a kind of cell as have
-///     one optical depth together: (an error)^2 per optical depth of a cell may be most_error_squared.
-///   - Errors below least_error do no harm, a thousand of them included.
+/// Planes have an error of some steps; under perspective, a quotient of floats has an additional error, relative to the
+/// depth extent of the cell, though a ray's path through a thin cell may be a hundred-thousandth of this extent.
+///   - One crossing may have an error of most_error, for any cell.
+///   - Successive crossings of a ray have random errors. A ray sees about as many cells of a kind as have one optical
+///     depth together: (error)^2 per optical depth of a cell may be most_error_squared.
+///   - Errors below least_error are harmless, even a thousand of them.
 struct DepthLimits {
-  // Of a pixel.
+  // In units of a pixel's value.
   static constexpr double most_error = 2.5e-6, most_error_squared = 1e-11, least_error = 5e-7;
-  // Of planes in steps, of quotients a part of what the cell spans; the usual ones are about two standard deviations.
+  // Of planes in steps; of quotients relative to the cell's extent. The usual errors are about two standard deviations.
   static constexpr double usual_plane_error = 6, usual_quotient_error = 0x1p-23, most_quotient_error = 0x1p-22;
 
-  double light_per_step = 0;                                      ///< most that a step of depth can change a pixel by
-  double least_extent = std::numeric_limits<double>::infinity();  ///< cells no deeper than this many steps are right
+  double light_per_step = 0;                                      ///< largest change of a pixel per step of depth
+  double least_extent = std::numeric_limits<double>::infinity();  ///< cells no deeper than this, in steps, are accurate
 
   DepthLimits() = default;
   DepthLimits(double light, bool perspective) : light_per_step(light) {
-    const double steps = least_error / light - usual_plane_error;  // infinite where there is no light
+    const double steps = least_error / light - usual_plane_error;  // infinite without light
     if (perspective)
       least_extent = std::max(steps, 0.0) / usual_quotient_error;
     else if (steps < 0)

@@ -16,19 +16,20 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The depth in bits that compare as it does: a negative float's bits fall as it rises, a positive one's rise with it.
+/// The depth as an integer in the same order: the bits of negative floats descend as the float ascends, those of
+/// positive floats ascend.
 HWY_INLINE std::uint32_t key_of(const TileEntry& e) {
   const auto bits = std::bit_cast<std::uint32_t>(e.near_depth);
   return bits ^ ((0u - (bits >> 31)) | 0x80000000u);
 }
 
-// Entries that share a step with one, on average, beyond which a list is put in order for certain: more would make
-// segments wait in their windows.
+// Average number of entries in an entry's step above which a list is sorted completely: more would make segments wait
+// in their windows.
 constexpr std::uint64_t crowd = 512;
 
-/// Least significant digit first, over the digits in which keys differ at all.
+/// Least significant digit first, over the digits in which keys differ.
 HWY_NOINLINE DepthOrder radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
-  constexpr int digit_bits = 11, digits = 3;  // three passes take less than four of bytes
+  constexpr int digit_bits = 11, digits = 3;  // three passes take less time than four with bytes
   constexpr std::uint32_t values = 1u << digit_bits;
   const auto digit_of = [](const TileEntry& e, int digit) { return key_of(e) >> digit * digit_bits & (values - 1); };
   std::uint32_t next[digits][values] = {};
@@ -72,7 +73,7 @@ static_assert(sizeof(TileEntry) == 8);
 HWY_INLINE const float* lanes_of(const TileEntry* entries) { return reinterpret_cast<const float*>(entries); }
 
 DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std::size_t n) {
-  constexpr std::size_t short_list = 24;  // no more compares than the passes below cost
+  constexpr std::size_t short_list = 24;  // at most as many comparisons as the passes below take
   if (n <= short_list) {
     insertion_sort(entries, n);
     return {{entries, n}, 0};
@@ -98,7 +99,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   const std::size_t step_count = std::min(std::bit_ceil(n / 2), most_steps);
   const float scale = static_cast<float>(step_count - 1) / (most - least);
   if (!(scale > 0 && scale < HUGE_VALF)) return radix_sort(entries, other, n);
-  // Rounding is monotonic, so steps are in order as depths are.
+  // Rounding is monotonic, so steps are in the same order as depths.
   for (i = 0; i + 2 * lanes <= n; i += 2 * lanes) {
     const auto step_of = [&](V v) HWY_ATTR { return ConvertTo(di, (v - Set(d, least)) * Set(d, scale)); };
     const auto a = step_of(LoadU(d, lanes_of(entries + i)));
@@ -121,7 +122,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   }
   if (company > n * crowd) return radix_sort(entries, other, n);
   for (i = 0; i < n; ++i) other[next[steps[i]]++] = entries[i];
-  // A step and what rounding may add: places are below 2^12, to 2^-23 of themselves.
+  // One step and the largest rounding error: step numbers are below 2^12, with an error of 2^-23 of themselves.
   return {{other, n}, 1.01 / static_cast<double>(scale)};
 }
 #endif  // HWY_TARGET == HWY_SCALAR

@@ -11,8 +11,8 @@
 namespace tessera::projection {
 namespace {
 
-/// A sum of doubles without rounding: components do not overlap and grow in magnitude, so the last one has the sum's
-/// sign.
+/// A sum of doubles without rounding: components do not overlap and increase in magnitude, so the last one has the
+/// sum's sign.
 class ExactSum {
  public:
   void add(double value) {
@@ -62,7 +62,7 @@ constexpr double beside_reach = 0x1p46, beside_precision = 0x1p-40;
 /// The power of two at or below a positive number.
 double power_of_two(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) & 0x7ff0000000000000u); }
 
-/// The multiple of a power of two that is nearest to v, which is less than 2^51 of it.
+/// The multiple of a power of two nearest to v, which must be less than 2^51 times the power.
 double rounded(double v, double step) { return step > 0 ? std::nearbyint(v / step) * step : v; }
 
 }  // namespace
@@ -84,7 +84,7 @@ LineOfSight line_of_sight(const PixelVertex& v, double pixels_per_tangent) {
 double sight_error(const PixelVertex& v, double pixels_per_tangent, double most_pixels) {
   if (pixels_per_tangent == 0) return 0;
   const double size = std::max(std::abs(v.x), std::abs(v.y)), w = std::abs(v.w);
-  // Twice the halves of steps: what is compared with these limits here has noise of its own.
+  // Twice the half steps, because what is compared with these limits here has rounding errors of its own.
   if (size < 0.5 * beside_reach * w)
     return std::max(finest_step * w,
                     position_precision * std::max(size, std::min(pixels_per_tangent, most_per_tangent) * w));

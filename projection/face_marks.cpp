@@ -16,7 +16,7 @@ bool is_at(const FaceMark& mark, double depth) { return std::abs(mark.depth - de
 double next_behind(double depth) { return std::nextafter(depth, std::numeric_limits<double>::infinity()); }
 double next_before(double depth) { return std::nextafter(depth, -std::numeric_limits<double>::infinity()); }
 
-/// Orders marks at one depth by slope in x, those of one such slope by that in y, and those of one plane by number.
+/// Sorts marks at one depth by slope in x, those with equal slopes by slope in y, and those in one plane by number.
 void order_by_slope(std::span<FaceMark> marks, std::size_t axis = 0) {
   if (marks.size() < 2) return;
   if (axis == 2) {
@@ -40,7 +40,7 @@ void order_by_slope(std::span<FaceMark> marks, std::size_t axis = 0) {
   }
 }
 
-/// Marks of one ray at one depth.
+/// Sets the encoded depths of marks of one ray at one depth.
 void put_in_place(std::span<FaceMark> marks) {
   order_by_slope(marks);
   double place = marks.front().depth;
@@ -51,8 +51,8 @@ void put_in_place(std::span<FaceMark> marks) {
   for (FaceMark& mark : marks) mark.behind = next_behind(place);
 }
 
-/// The scalar at part `part` of a segment: not the higher end's, so that a part that lies below a step of the transfer
-/// function keeps an end below it.
+/// The scalar at the fraction `part` of a segment. Less than the scalar of the higher end, so that a part below a step
+/// of the transfer function keeps an end below it.
 double scalar_between(double from, double to, double part) {
   if (from == to) return from;
   const auto [low, high] = std::minmax(from, to);
@@ -69,7 +69,7 @@ void FaceMarks::reset(std::size_t pixels) {
 }
 
 void FaceMarks::sort() {
-  // By all that a mark holds: equal ones are interchangeable, so the order in which triangles come shows nowhere.
+  // By all fields: equal marks are interchangeable, so the order of the triangles has no effect.
   std::sort(marks_.begin(), marks_.end(), [](const FaceMark& a, const FaceMark& b) {
     const auto key = [](const FaceMark& m) {
       return std::tie(m.pixel, m.depth, m.number, m.cosine, m.value, m.slope, m.slope_error);
@@ -125,10 +125,10 @@ void FaceMarks::cut_one(RaySegments& segments, std::size_t at, std::span<const F
     return;
   }
   const double from = segments.scalar_front[at], to = segments.scalar_back[at];
-  std::size_t rest = at;  // what is not cut yet
+  std::size_t rest = at;  // the part that is not cut yet
   for (const FaceMark& mark : marks) {
     if (is_at(mark, front)) {
-      // Nothing of what is left is before it.
+      // No remaining part is in front of the mark.
       segments.front[rest] = mark.behind;
       if (!(segments.front[rest] < segments.back[rest])) {
         segments.front[rest] = segments.back[rest] = mark.depth;

@@ -14,15 +14,15 @@
 
 namespace tessera::projection {
 
-/// An array of many numbers that are written before they are read: not set to zero, kept over frames, and on huge pages
-/// where the system lends them on advice, from half of one on. (Faults of 4 KiB cost as much as filling the array does,
-/// and a processor remembers where a hundred pages are, for stores sixteen.)
+/// An array for large data that are written before they are read: not set to zero, kept from frame to frame, and on
+/// huge pages where the system provides them on advice, if it is at least half a huge page. (Page faults of 4 KiB cost
+/// as much as filling the array, and a processor's TLB has about a hundred entries, sixteen for stores.)
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
-  /// Room for `size` elements of no value; what was in it is lost. Room more than twice too large is given back.
+  /// Room for `size` uninitialized elements; the old ones are lost. Memory of more than twice the size is freed.
   void reset(std::size_t size) {
     size_ = size;
     if (size <= capacity_ && size >= capacity_ / 2) return;
@@ -32,7 +32,7 @@ class LargeArray {
     capacity_ = size;
   }
 
-  /// As reset(), but keeps what is in the first elements.
+  /// Like reset(), but keeps the old elements.
   void grow(std::size_t size) {
     if (size > capacity_) {
       auto grown = room_for(size);
@@ -43,14 +43,14 @@ class LargeArray {
     size_ = size;
   }
 
-  /// `size` elements that somebody else keeps, until the next reset().
+  /// Refers to `size` elements owned elsewhere, until the next reset().
   void refer(T* data, std::size_t size) {
     elements_ = Room(data, Free{0});
     size_ = size;
     capacity_ = 0;
   }
 
-  /// No elements; their room stays.
+  /// Removes all elements; their memory stays.
   void clear() { size_ = 0; }
 
   [[nodiscard]] T* data() { return elements_.get(); }
@@ -63,7 +63,7 @@ class LargeArray {
  private:
   static constexpr std::size_t page = std::size_t{1} << 21, line = 64;
   struct Free {
-    std::size_t alignment = line;  ///< 0: somebody else keeps it
+    std::size_t alignment = line;  ///< 0: owned elsewhere
     void operator()(T* p) const {
       if (alignment > 0) ::operator delete(p, std::align_val_t(alignment));
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr int axis_bits = 21;
 
 /// Position along the curve of a cell of the 2^21 grid: Skilling's AxestoTranspose, then the bits of the three axes
-/// taken in turn.
+/// interleaved.
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   std::uint32_t axis[3] = {x, y, z};
   for (std::uint32_t q = 1u << (axis_bits - 1); q > 1; q >>= 1) {  // undo excess work, from the highest bit
@@ -40,11 +40,11 @@ std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 
 std::uint32_t grid_step(double offset, double longest) {
   const double step = offset / longest * (1 << axis_bits);
-  if (!(step > 0)) return 0;  // NaN too, where the box has no extent
+  if (!(step > 0)) return 0;  // also NaN, for a box without extent
   return static_cast<std::uint32_t>(std::min(step, static_cast<double>((1 << axis_bits) - 1)));
 }
 
-/// A key is 128 bits: its place, then its index.
+/// A key has 128 bits: its place, then its tet.
 constexpr int key_bits = 128, first_digit = 16, later_digit = 8;
 
 int digit_bits(int depth) { return depth == 0 ? first_digit : later_digit; }
@@ -85,7 +85,7 @@ std::uint64_t first_in_file_order(int part, std::uint64_t total, int parts) {
 
 int part_at_random(std::uint64_t tet, std::uint64_t seed, int parts) {
   std::uint64_t hash = tet + (seed + 1) * 0x9e3779b97f4a7c15u;
-  for (int round = 0; round < 2; ++round) {  // a second round parts neighbouring seeds
+  for (int round = 0; round < 2; ++round) {  // a second round separates neighbouring seeds
     hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9u;
     hash = (hash ^ hash >> 27) * 0x94d049bb133111ebu;
     hash ^= hash >> 31;
@@ -114,7 +114,7 @@ std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const
   return keys;
 }
 
-// A splitter may miss by the tolerance, so a part by twice that.
+// A splitter may be off by the tolerance, so a part by twice that.
 CurveCut::CurveCut(std::uint64_t total, int parts)
     : tolerance_(total / (250 * static_cast<std::uint64_t>(parts))), splitters_(static_cast<std::size_t>(parts) - 1) {
   if (parts > 1) bins_.push_back({{0, 0}, 0});
@@ -148,19 +148,19 @@ void CurveCut::narrow(std::span<const std::uint64_t> counts) {
     const Bin& bin = bins_[open.bin];
     std::uint64_t below = bin.below;
     std::size_t d = 0;
-    // The digit with which the target is reached; the last one if there are not as many keys.
+    // The digit at which the target is reached; the last one if there are fewer keys.
     while (d + 1 < digits && below + counts[(open.bin << bits) + d] < open.target)
       below += counts[(open.bin << bits) + d++];
     const std::uint64_t inside = counts[(open.bin << bits) + d];
     const CurveKey first = with_digit(bin.first, depth_, d);
-    // Cutting before or behind this finer bin may be near enough; without a tolerance it has to be exact.
+    // Cutting before or behind this finer bin may be close enough; with a tolerance of 0, it must be exact.
     const std::uint64_t miss_before = open.target > below ? open.target - below : 0;
     const std::uint64_t miss_behind = below + inside > open.target ? below + inside - open.target : 0;
     if (miss_before <= tolerance_ && (miss_before <= miss_behind || d + 1 == digits)) {
       splitters_[open.splitter] = first;
     } else if (miss_behind <= tolerance_ && d + 1 < digits) {
       splitters_[open.splitter] = with_digit(bin.first, depth_, d + 1);
-    } else if (depth_ + bits == key_bits) {  // one key, as no tet comes twice
+    } else if (depth_ + bits == key_bits) {  // one key, as no tet occurs twice
       splitters_[open.splitter] = miss_before == 0 ? first : CurveKey{first.place, first.tet + 1};
     } else {
       if (finer.empty() || finer.back().first != first) finer.push_back({first, below});

@@ -11,7 +11,7 @@ namespace tessera::projection {
 namespace {
 
 double on_grid(double pixel) {
-  constexpr double cells = 4294967296.0;  // 2^32; beyond 2^20 pixels the rounding changes nothing
+  constexpr double cells = 4294967296.0;  // 2^32; beyond 2^20 pixels, the rounding has no effect
   const double scaled = pixel * cells;
   return std::isfinite(scaled) ? std::nearbyint(scaled) / cells : pixel;
 }

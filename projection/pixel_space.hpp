@@ -12,15 +12,15 @@
 
 namespace tessera::projection {
 
-/// A vertex as a view sees it. A vertex behind the eye has w < 0, so cells that cross the eye plane need no clipping
-/// before they are rasterized. Whether a ray passes a vertex left, right or through it, line_of_sight() says.
+/// A projected vertex. Behind the eye, w < 0, so cells that cross the eye plane need no clipping before rasterization.
+/// line_of_sight() determines on which side of a vertex a ray passes.
 using PixelVertex = scene::PixelPlace;
 
-/// The linear map from world to homogeneous pixel coordinates (scene/pixel_view.hpp), and what of it is seen.
+/// The linear map from world to homogeneous pixel coordinates (scene/pixel_view.hpp), and the visible range.
 ///
-/// Orthographic pixel positions are rounded to multiples of 2^-32 pixel: a vertex meant to lie on a pixel centre does,
-/// in spite of the decimal noise of camera and mesh, and the tie rule then decides in one way along a whole edge. The
-/// shift is far below what a picture shows (docs/ACCURACY.md).
+/// Orthographic pixel positions are rounded to multiples of 2^-32 pixel: so a vertex that is meant to be on a pixel
+/// centre is exactly there, in spite of the decimal noise of camera and mesh, and the tie rule then decides in the same
+/// way along a whole edge. The shift is far below what is visible in an image (docs/ACCURACY.md).
 class PixelSpace {
  public:
   /// Throws Error(bad_input) if camera or size is invalid.
@@ -28,16 +28,17 @@ class PixelSpace {
 
   [[nodiscard]] PixelVertex project(const glm::dvec3& p_world) const;
 
-  /// The same of many points, on SIMD lanes, to the same bits: out[i] is project(p_world[i]). Spans of one length.
+  /// The same for many points, on SIMD lanes, with the same bits: out[i] is project(p_world[i]). The spans have equal
+  /// lengths.
   void project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const;
 
-  /// As scene::PixelView has it.
+  /// Same as in scene::PixelView.
   [[nodiscard]] double length_per_depth(double x, double y) const { return view_.length_per_depth(x, y); }
 
-  /// Of the ray through a pixel position, in the world, of any length.
+  /// Direction of the ray through a pixel position, in world space, of any length.
   [[nodiscard]] glm::dvec3 direction(double x, double y) const { return view_.direction(x, y); }
 
-  /// Planar depths between which anything is seen: [max(0, near), far], or [0, inf).
+  /// The visible range of planar depths: [max(0, near), far], or [0, inf).
   [[nodiscard]] double near_depth() const { return near_; }
   [[nodiscard]] double far_depth() const { return far_; }
   [[nodiscard]] bool perspective() const { return view_.perspective; }

@@ -14,58 +14,59 @@
 
 namespace tessera::projection {
 
-/// One cell in a tile's list: lists are ordered by (near_depth, tet).
+/// A cell in a tile's list. order_by_depth() sorts lists by near_depth.
 struct TileEntry {
-  float near_depth;  ///< behind TileLists::depth_origin(); not above the smallest depth of the cell that can be seen
+  float near_depth;  ///< relative to TileLists::depth_origin(); not greater than the smallest visible depth of the cell
   std::uint32_t tet;
 };
 
-/// What the rasterizer reads of a frame. `vertices[v]` stands for the mesh's vertex v.
+/// The frame data that the rasterizer reads. `vertices[v]` is the mesh's vertex v.
 struct ProjectedMesh {
   const PreparedMesh* mesh;
   std::span<const PixelVertex> vertices;
   double near_depth, far_depth;  ///< the clipping range in planar depth
-  double pixels_per_tangent;     ///< PixelSpace's
-  double scalar_origin = 0;      ///< segments' scalars are counted from this
-  /// For AttributeSegments, by vertex: the attribute. Linear in each cell, whether the scalars are by point or by cell.
+  double pixels_per_tangent;     ///< as in PixelSpace
+  double scalar_origin = 0;      ///< segments' scalars are relative to this
+  /// For AttributeSegments: the attribute, by vertex. Linear in each cell, for both point and cell scalars.
   std::span<const double> attribute{};
-  /// The frame's iso-surfaces, which SplitRasterizer and rasterize_lattice() cross; null: none.
+  /// The frame's iso-surfaces, for SplitRasterizer and rasterize_lattice(); null: none.
   const IsoView* iso = nullptr;
 };
 
-/// What happened on the way.
+/// Statistics of rasterization.
 struct RasterCounts {
   std::uint64_t exact_sign_tests = 0;  ///< planes: edge signs decided by exact arithmetic
-  std::uint64_t unpaired = 0;          ///< scanline: front-face fragments without a back-face one, lost
+  std::uint64_t unpaired = 0;          ///< scanline: front-face fragments lost because they had no back-face fragment
 };
 
 /// The `planes` rasterizer: cells to ray segments, for the pixels of one rectangle.
 ///
-/// A ray enters a cell through one face and leaves it through another. Which ones, the signs of the six edge functions
-/// E_ab = | (px, py, 1) ; a ; b | tell: a face (a, b, c) is pierced if E_ab, E_bc and E_ca agree in sign, and depth and
-/// scalar there are means of the corners' with weights |E_bc|, |E_ca|, |E_ab|. So nothing is divided at set-up, values
-/// never leave the face's range, an edge-on face is just never pierced, and cells that cross the eye plane are not
-/// special (the weights are 3D barycentric coordinates in homogeneous space).
+/// A ray enters a cell through one face and leaves it through another. The signs of the six edge functions
+///   E_ab = | (px, py, 1) ; a ; b |
+/// determine which: a face (a, b, c) is pierced if E_ab, E_bc and E_ca have the same sign, and depth and scalar there
+/// are means of the corners' with weights |E_bc|, |E_ca|, |E_ab|. So set-up needs no divisions, values never leave the
+/// face's range, an edge-on face is simply never pierced, and cells that cross the eye plane are not special (the
+/// weights are 3D barycentric coordinates in homogeneous space).
 ///
-/// Watertight: vertices come in canonical order (PreparedMesh), so cells that share an edge or a face compute the same
+/// Watertight: vertices are in canonical order (PreparedMesh), so cells that share an edge or a face compute the same
 /// bits. Signs are those of exact arithmetic on rounded lines of sight with the tie rule (edge_sign.hpp): a double
-/// evaluation decides unless it lies within its error bound. Along any ray the segments of a mesh tile the ray's way
-/// through it.
+/// evaluation decides unless it is within its error bound. Along any ray, the segments of a mesh cover the ray's path
+/// through it without gaps and overlaps.
 ///
-/// Lanes hold candidate pixels of the cell's box, packed row after row, so that small boxes fill the lanes.
+/// Lanes contain candidate pixels of the cell's box, packed row by row, so that small boxes fill the lanes.
 ///
 /// Processes cells from the front of `entries` while `out` has room for a whole rectangle more, appends to `out`, and
-/// returns how many it took (all, if there is room; at least one if out.capacity() - out.size >= rect.area()). Bits do
-/// not depend on the rectangle. Signs, not depths, choose the faces: a maximum over the planes' depths would
-/// need a tie rule at every edge.
+/// returns the number of processed cells (all, if there is room; at least one if out.capacity() - out.size >=
+/// rect.area()). Bits do not depend on the rectangle. Signs, not depths, select the faces: a maximum over the planes'
+/// depths would need a tie rule at every edge.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts);
 
-/// The same with projected.attribute at both ends of each segment.
+/// The same, with projected.attribute at both ends of each segment.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts);
 
-/// Name of the instruction set that rasterize_planes runs on: "AVX3", "AVX2", "SSE4", ...
+/// Name of the instruction set that rasterize_planes uses: "AVX3", "AVX2", "SSE4", ...
 std::string instruction_set();
 
 }  // namespace tessera::projection

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t tets_a_task = 4096;
 
-/// Canonical order of corners; equal positions by index.
+/// Canonical order of corners; equal positions are ordered by index.
 class CornerOrder {
  public:
   explicit CornerOrder(const scene::TetMeshView& mesh) : positions_(mesh.positions) {}
@@ -83,7 +83,7 @@ std::array<double, 2> PreparedMesh::scalar_bounds(std::size_t tet) const {
   if (mesh_.association == scene::Association::cell) return {mesh_.scalars[tet], mesh_.scalars[tet]};
   const scene::Tet& t = mesh_.tets[tet];
   const double a = mesh_.scalars[t[0]], b = mesh_.scalars[t[1]], c = mesh_.scalars[t[2]], d = mesh_.scalars[t[3]];
-  // std::minmax of a list branches, either way.
+  // std::minmax of a list branches, unpredictably.
   return {std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d))};
 }
 

@@ -12,14 +12,14 @@ namespace tessera::projection {
 
 /// Puts every tet's corners in canonical order, the lexicographic order of their positions (x, then y, then z). A face
 /// shared by two cells is then computed from the same three points in the same order, to the same bits, whatever
-/// indices and orientation its cells use; coincident vertices at a seam included.
+/// indices and orientation its cells use. This includes coincident vertices at a seam.
 void order_corners(scene::TetMesh& mesh);
 
-/// A mesh with what the projection needs and no view changes.
+/// A mesh with the data that projection needs and that do not depend on the view.
 class PreparedMesh {
  public:
-  /// The mesh must outlive this object. Where order_corners() has not been called for it, its tets are copied, which
-  /// takes 16 bytes each. Throws Error(bad_input) beyond 2^32 - 1 tets: split such a mesh over processes.
+  /// The mesh must outlive this object. If order_corners() has not been called for it, its tets are copied, which takes
+  /// 16 bytes each. Throws Error(bad_input) for more than 2^32 - 1 tets: split such a mesh over processes.
   explicit PreparedMesh(const scene::TetMeshView& mesh);
   PreparedMesh(PreparedMesh&&) = default;
   PreparedMesh& operator=(PreparedMesh&&) = default;
@@ -27,23 +27,23 @@ class PreparedMesh {
   [[nodiscard]] const scene::TetMeshView& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t tet_count() const { return mesh_.tets.size(); }
 
-  /// The tets, their corners in canonical order.
+  /// The tets, with their corners in canonical order.
   [[nodiscard]] std::span<const scene::Tet> tets() const { return tets_; }
 
   /// Smallest and largest scalar in a tet.
   [[nodiscard]] std::array<double, 2> scalar_bounds(std::size_t tet) const;
 
-  /// Tets of a block: those of block b are b * block_tets to (b + 1) * block_tets, the last block may be short.
+  /// Tets of a block: block b has tets b * block_tets to (b + 1) * block_tets; the last block may be shorter.
   static constexpr std::size_t block_tets = 64;
   [[nodiscard]] std::size_t block_count() const { return block_bounds_.size(); }
-  /// Smallest and largest scalar in a block, so that whole blocks are culled; a quarter of a byte a tet.
+  /// Smallest and largest scalar in a block, so that whole blocks can be culled; a quarter of a byte per tet.
   [[nodiscard]] std::array<double, 2> block_scalar_bounds(std::size_t block) const { return block_bounds_[block]; }
-  /// Whether all scalars are float numbers, as those of most files are: comparing them in float is then exact.
+  /// Whether all scalars are representable as float, like those of most files: comparing them in float is then exact.
   [[nodiscard]] bool scalars_are_floats() const { return scalars_are_floats_; }
 
  private:
   scene::TetMeshView mesh_;
-  std::vector<scene::Tet> ordered_;  ///< a copy, where the mesh's own are in another order
+  std::vector<scene::Tet> ordered_;  ///< a copy, if the mesh's own are in another order
   std::span<const scene::Tet> tets_;
   std::vector<std::array<double, 2>> block_bounds_;
   bool scalars_are_floats_ = false;

@@ -7,16 +7,16 @@
 
 namespace tessera::projection {
 
-/// Ray segments of one tile: the stretches of its view rays that lie inside a tetrahedron.
+/// Ray segments of one tile: the intervals of its view rays inside tetrahedra.
 ///
-/// Shape   structure of arrays of equal capacity; the first `size` elements are segments. Capacity includes `padding`
+/// Shape   structure of arrays of equal capacity; the first `size` elements are segments. capacity() excludes `padding`
 ///         elements behind the last, which a SIMD store may overwrite.
-/// Order   none: one pixel's segments lie anywhere. sorting/ orders them by (front, back, tet).
+/// Order   unspecified. sorting/ orders the segments of a pixel by (front, back, tet).
 /// Units   front, back: planar depth of entry and exit along the view direction, world units, double, so that the
-///         length of a thin cell far away is right to 1e-16 of its depth; scalars in the field's own unit at entry and
-///         exit.
-/// Holds   front <= back, both inside the clipping range, all finite. Cells that are thinner than the rounding of a
-///         depth have length zero; they are kept, so that the set of cells a ray passes is exact.
+///         length of a thin cell far away has an error of 1e-16 of its depth; scalars in the field's own unit at entry
+///         and exit.
+/// Holds   front <= back, both inside the clipping range, all finite. Cells thinner than the rounding of a depth have
+///         length zero; they are kept, so that the set of cells that a ray passes is exact.
 struct RaySegments {
   static constexpr std::size_t padding = 16;
 
@@ -34,7 +34,7 @@ struct RaySegments {
   [[nodiscard]] std::uint32_t pixel(std::size_t i) const { return static_cast<std::uint32_t>(pixel_and_tet[i]); }
   [[nodiscard]] std::uint32_t tet(std::size_t i) const { return static_cast<std::uint32_t>(pixel_and_tet[i] >> 32); }
 
-  /// Moves segment `from` to `to` (an index not above it).
+  /// Moves segment `from` to `to`, which must not be greater.
   void move(std::size_t from, std::size_t to) {
     pixel_and_tet[to] = pixel_and_tet[from];
     front[to] = front[from];
@@ -44,8 +44,8 @@ struct RaySegments {
   }
 };
 
-/// Ray segments that carry a second value beside the scalar which is linear in each cell, such as the light that
-/// reaches it. A type of its own: rasterizer, store and sinks that are compiled for RaySegments know nothing of it.
+/// Ray segments with a second value, in addition to the scalar, that is linear in each cell, such as the light that
+/// reaches it. A separate type, so that rasterizer, store and sinks compiled for RaySegments are not affected.
 struct AttributeSegments : RaySegments {
   std::vector<double> attribute_front, attribute_back;  ///< at entry and exit, in the attribute's own unit
 

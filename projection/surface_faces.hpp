@@ -13,23 +13,23 @@
 
 namespace tessera::projection {
 
-/// The triangles of one surface of a frame. All processes have all of them, in one order.
+/// The triangles of one surface of a frame. All processes have all triangles, in the same order.
 struct SurfaceFaces {
   const tessera::TriangleMesh* mesh;
-  std::uint32_t entering, leaving;           ///< scene::SurfaceSet::face_crossing() where a ray enters, leaves
-  std::span<const std::uint8_t> own{};       ///< by triangle: 1 if it is this process's
-  std::uint32_t process = 0, processes = 1;  ///< `own` empty: those whose number leaves `process` over
+  std::uint32_t entering, leaving;           ///< scene::SurfaceSet::face_crossing() of rays that enter, or leave
+  std::span<const std::uint8_t> own{};       ///< by triangle: 1 if this process owns it
+  std::uint32_t process = 0, processes = 1;  ///< `own` empty: owns those with triangle % processes == process
   [[nodiscard]] bool owns(std::size_t triangle) const {
     return own.empty() ? triangle % processes == process : own[triangle] != 0;
   }
 };
 
-/// Surfaces of triangles as a view sees them: which tiles each triangle is in, and where rays meet it.
+/// Surfaces of triangles in one view: the tiles that each triangle is in, and where rays meet it.
 ///
-/// Signs, not depths, tell whether a ray goes through a triangle: those of the three edges, with the tie rule of
-/// edge_sign.hpp, so that triangles which share corners' places leave no gap and no overlap. Depth and value are means
-/// of the corners' with the edge functions as weights (planes_rasterizer.hpp). A triangle that shows as a line is met
-/// by no ray, nor is one where the eye lies in it.
+/// Whether a ray passes through a triangle is determined by signs, not by depths: the signs of the three edges, with
+/// the tie rule of edge_sign.hpp, so that triangles with common corner positions leave no gap and do not overlap. Depth
+/// and value are means of the corners' with the edge functions as weights (planes_rasterizer.hpp). No ray meets a
+/// triangle that appears as a line, or one whose plane contains the eye.
 class FrameFaces {
  public:
   /// All must outlive this object. Work runs in the caller's task arena (oneTBB).
@@ -38,7 +38,7 @@ class FrameFaces {
   /// Whether this process has triangles in a tile.
   [[nodiscard]] bool owns_in(std::size_t tile) const { return owned_[tile] != 0; }
 
-  /// The marks of a rectangle that lies in one tile, sorted.
+  /// Sets `marks` to the sorted marks of a rectangle, which must be within one tile.
   void meet(const scene::PixelRect& rect, FaceMarks& marks) const;
 
   [[nodiscard]] std::uint64_t bytes() const;

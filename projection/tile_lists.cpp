@@ -17,7 +17,7 @@
 namespace tessera::projection {
 namespace {
 
-/// `depth - origin` as a float that is not above it, rounding of the sum `origin + result` in double included.
+/// `depth - origin` as a float that is not greater, including the rounding of the sum `origin + result` in double.
 float depth_behind(double origin, double depth) {
   const double exact = (depth - origin) - 4e-16 * (std::abs(depth) + std::abs(origin));
   const auto nearest = static_cast<float>(std::clamp(exact, -3e38, 3e38));
@@ -47,10 +47,10 @@ bool crosses_eye_plane(const std::array<PixelVertex, 4>& c) {
 
 static_assert(PreparedMesh::block_tets == cull_block_cells);
 
-constexpr std::size_t blocks_a_check = 256;  // of being stopped: 16,384 tets, below a millisecond
+constexpr std::size_t blocks_a_check = 256;  // between checks for a stop: 16,384 tets, less than a millisecond
 
-/// Runs of blocks that are culled and filled apart: a few a thread, so that none waits long for the last, yet their
-/// counters, one a tile each, stay below 32 MiB.
+/// The number of runs of blocks that are culled and filled separately: a few per thread, so that no thread waits long
+/// for the last one, but few enough that their counters, one per tile each, stay below 32 MiB.
 std::size_t run_count(std::size_t blocks, std::size_t tiles) {
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t most = std::max<std::size_t>((std::size_t{8} << 20) / tiles, 1);
@@ -72,7 +72,7 @@ scene::PixelRect TileGrid::rect(std::size_t tile) const {
           std::min((row + 1) * tile_size, image.height)};
 }
 
-/// Of a projected tet.
+/// For a projected tet.
 template <class Visit>
 void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
   const std::uint32_t place = buffers_->places[tet];
@@ -90,7 +90,8 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
   for (int row = box.y0 / size; row <= (box.y1 - 1) / size; ++row)
     for (int column = box.x0 / size; column <= (box.x1 - 1) / size; ++column) {
       const std::size_t tile = static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
-      // Such a cell's box is the whole window; its tiles are those that no plane through the eye parts from it.
+      // The box of a cell like this is the whole window; its tiles are those that no plane through the eye separates
+      // from it.
       if (crossing && footprint(corners, grid_.rect(tile)).empty()) continue;
       visit(tile);
     }
@@ -157,7 +158,7 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
 
 void TileLists::add_counts() {
   const std::size_t tiles = tile_counts_.size();
-  std::vector<std::uint64_t> all;  // entries of all members, where there are several
+  std::vector<std::uint64_t> all;  // entries of all members, if there are several
   if (team_ != nullptr) {
     const auto members = static_cast<std::size_t>(team_->size()), rank = static_cast<std::size_t>(team_->rank());
     auto* const shared = team_->memory_of<std::uint32_t>(scene::Team::Room::tile_counts, members * tiles);
@@ -168,7 +169,7 @@ void TileLists::add_counts() {
     team_->barrier();
     all.assign(tiles, 0);
     for (std::size_t m = 0; m < members; ++m) {
-      if (m == rank) tile_counts_ = all;  // this member's entries come behind those of the members before
+      if (m == rank) tile_counts_ = all;  // this member's entries follow those of the previous members
       for (std::size_t i = 0; i < tiles; ++i) all[i] += shared[m * tiles + i];
     }
   }
@@ -179,7 +180,7 @@ void TileLists::add_counts() {
     counts_.projected += run.culled.projected;
     for (std::size_t i = 0; i < tiles; ++i) {
       const std::uint32_t here = run.tiles[i];
-      run.tiles[i] = static_cast<std::uint32_t>(tile_counts_[i]);  // below the number of tets, so 32 bits hold it
+      run.tiles[i] = static_cast<std::uint32_t>(tile_counts_[i]);  // less than the number of tets, so 32 bits suffice
       tile_counts_[i] += here;
     }
   }
@@ -249,7 +250,7 @@ bool TileLists::cull_exactly(std::size_t tet, const ClearIntervals& clear, CullC
   }
   const scene::PixelRect window{0, 0, grid_.image.width, grid_.image.height}, box = footprint(c, window);
   if (box.empty()) {
-    // Inside the window's span in both directions, yet without a pixel centre?
+    // Inside the window's range in both directions, but without a pixel centre?
     const auto inside = [&](const PixelVertex& v) {
       return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
     };
@@ -298,7 +299,7 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
   TileEntry* const entries = buffers_->entries.data();
   const std::size_t tiles = last - first;
   const auto add = [&](std::size_t tet, std::size_t tile) {
-    // Tiles before the band wrap to large numbers.
+    // Numbers of tiles before the band wrap around to large numbers.
     if (tile - first < tiles)
       entries[next[tile - first]++] = {buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
   };
@@ -318,7 +319,7 @@ std::span<TileEntry> TileLists::tile(std::size_t tile) {
 }
 
 std::size_t TileLists::bytes() const {
-  // Of a team's memory a member has its share, and of what it keeps itself its share alone is ever touched.
+  // A member has its share of a team's memory, and of its own arrays only its share is ever touched.
   const std::size_t members = team_ != nullptr ? static_cast<std::size_t>(team_->size()) : 1;
   return (buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
           buffers_->entries.bytes()) /

@@ -9,11 +9,11 @@
 namespace tessera::projection {
 namespace {
 
-constexpr GLuint threads_a_cell = 8, threads_a_group = 64;  // the shader's
+constexpr GLuint threads_a_cell = 8, threads_a_group = 64;  // as in the shader
 
 }  // namespace
 
-/// Part of rasterize_cells.comp.
+/// Uniform data of rasterize_cells.comp.
 struct GlRasterizer::Part {
   double half_width, half_height, tangents_per_pixel, key_origin, keys_per_depth, scalar_origin, scalar_unit,
       length_unit;
@@ -69,7 +69,7 @@ void GlRasterizer::dispatch(std::span<const Stretch> stretches, const Lists& lis
     cells += s.cells.size();
   }
   const std::size_t cell_bytes = cells * sizeof(CellRecord), part_bytes = parts.size() * sizeof(Part);
-  uploaded_.wait();  // the last ones have gone up
+  uploaded_.wait();  // the last cells have been uploaded
   upload_cells_.reserve(cell_bytes);
   upload_parts_.reserve(part_bytes);
   cells_.reserve(cell_bytes);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pixels a batch's cells cover: the outline's edges alone, a cell a lane or a pixel a lane. Included once per
-// instruction set (Highway's include guard idiom).
+// Finds the pixels that a batch's cells cover, from the edges of the outline alone, one cell or one pixel per lane.
+// Included once per instruction set (Highway's include guard idiom).
 //
-// What      Hits: pixels whose centre is inside the cell's outline, where the least of its four edge functions is
-//           positive. They are packed into the queue, those near an edge marked as uncertain.
-// How       Edge functions are linear, so from one block of pixels to the next each grows by a constant: four additions
-//           a block. Cells of a few pixels go through theirs together instead, a cell a lane.
-// Accuracy  Float. The sums' rounding is below outline_uncertainty; within it lattice_cross-inl.h settles the sign.
-// Ends      Blocks reach over the rectangle only where it is narrower than a block: lanes there are masked.
+// What      Hits: pixels whose centre is inside the cell's outline, where the smallest of its four edge functions is
+//           positive. They are packed into the queue; those close to an edge are marked as uncertain.
+// How       Edge functions are linear, so from one block of pixels to the next each changes by a constant: four
+//           additions per block. Cells of a few pixels are processed together instead, one cell per lane.
+// Accuracy  Float. The rounding of the sums is below outline_uncertainty; within it, lattice_cross-inl.h determines the
+//           sign.
+// Ends      Blocks extend beyond the rectangle only if it is narrower than a block: lanes there are masked.
 
 #if defined(TESSERA_PROJECTION_LATTICE_COVER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_COVER_INL_H_
@@ -27,8 +28,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way
-/// round, whichever takes the fewest to cover a cell's box.
+/// A block of pixels is a vector of lanes: approximately square, or half as high and twice as wide, or the reverse; the
+/// shape is used with which the fewest blocks cover a cell's box.
 struct BlockShape {
   alignas(64) std::int32_t column[lanes], row[lanes];
   std::int32_t width, height;
@@ -41,16 +42,16 @@ constexpr BlockShape block_of(int width) {
 constexpr int usual_width = lanes >= 8 ? 4 : 2;
 constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual_width), block_of(usual_width / 2)};
 
-/// An outline's sign is certain beyond this: 1 (2^-22 of the largest value), and a sum over blocks rounds a quarter of
-/// that each time, as to make the step did; beside a narrow rectangle, whose blocks reach out of it, values are up to
-/// 1.4 times as large.
+/// Beyond this, an outline's sign is certain: 1 (2^-22 of the largest value) for the start, and for each addition from
+/// block to block a quarter of it for the rounding of the sum, and a quarter for that of the step. Next to a narrow
+/// rectangle, whose blocks extend beyond it, values are up to 1.4 times as large.
 constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
-/// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
+/// first, first + 1... (Iota() of a variable would go through memory, lane by lane.)
 HWY_INLINE VI numbers_from(int first) { return Iota(DI(), 0) + Set(DI(), first); }
 
-/// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
+/// Appends the lanes that are hit, or may be, behind `size` hits; returns the new size.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
   const DF df;
   const DI d;
@@ -63,14 +64,14 @@ HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, s
   return size + pack.count();
 }
 
-/// Cells of a few pixels: as many of a batch as lanes, those from `from` on, go through their candidate pixels
+/// Cells of a few pixels: as many of a batch as there are lanes, from `from` on, process their candidate pixels
 /// together, row by row, each from its own corner.
 struct SmallCells {
-  // Cycles, roughly as measured with AVX-512: of blocks, and of a step of all lanes here.
+  // Cycles, roughly as measured with AVX-512: of blocks, and of one step of all lanes here.
   static constexpr int block_cost = 8, cell_cost = 45, step_cost = 9, start_cost = 60;
 
-  /// Those of `cells` (a bit each of the batch) that are faster this way: up to some size, if the most candidate pixels
-  /// of them all cost less than their blocks.
+  /// The subset of `cells` (one bit each) that is faster this way: those up to some size, if their largest number of
+  /// candidate pixels costs less than the blocks of all.
   HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
     const DI d;
     const auto takes = mask_of(cells, from);
@@ -91,7 +92,7 @@ struct SmallCells {
     return 0;
   }
 
-  /// Covers `cells` (a bit each of the batch). drain() makes room in the queue.
+  /// Covers `cells` (one bit each). drain() makes room in the queue.
   template <class Drain>
   HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, int from,
                                HitQueue& queue, const Drain& drain) {
@@ -142,9 +143,9 @@ struct SmallCells {
 /// Blocks of pixels over each of a batch's cells.
 class CellBlocks {
  public:
-  /// Lays blocks over all cells at once. `rect`: the pixels, counted from the square's corner. Blocks that would reach
-  /// out of it move inwards: the edge functions exclude what is not the cell's. Only in the narrowest of rectangles
-  /// does that not help; those are `clipped`.
+  /// Places blocks over all cells at once. `rect`: the pixels, relative to the square's corner. Blocks that would
+  /// extend beyond it are moved inwards: the edge functions exclude pixels outside the cell. In rectangles narrower
+  /// than a block this is not enough; those blocks are `clipped`.
   HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect) {
     right_ = rect.x1, bottom_ = rect.y1;
     const DI d;
@@ -197,7 +198,7 @@ class CellBlocks {
     }
   }
 
-  /// Block after block, row by row, in one loop. (How many blocks a row has is hard to predict.)
+  /// Processes block after block, row by row, in one loop, because the number of blocks in a row is hard to predict.
   HWY_INLINE void cover(const CellParts& parts, int t, HitQueue& queue) const {
     const DI d;
     const DF df;
@@ -218,8 +219,8 @@ class CellBlocks {
       MF among = Eq(x, x);
       if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
       size = push_hits(least, among, hits, queue, size);
-      // All ones behind the last of a row. (A comparison's result would come in a part of a register: it would wait for
-      // the count of hits to be done with the rest.)
+      // All bits are set behind the last block of a row. (The result of a comparison would be in a part of a register,
+      // and combining it with the rest would wait for the count of hits.)
       const int wraps = (--left - 1) >> 31;
       left += columns & wraps;
       const int step = (wraps & CellBatch::most) + t;
@@ -239,15 +240,15 @@ class CellBlocks {
   }
 
   int right_, bottom_;
-  // By cell: the first block's corner, how many blocks in a row and in all, and what is added from each to the next, in
-  // the second half after the last of a row.
+  // By cell: the first block's corner, the number of blocks in a row and in all, and the increments from each to the
+  // next; the second half is for the last block of a row.
   alignas(64) std::int32_t left_[CellBatch::most], top_[CellBatch::most], columns_[CellBatch::most];
   alignas(64) std::int32_t blocks_[CellBatch::most], shape_[CellBatch::most], clipped_[CellBatch::most];
   alignas(64) std::int32_t first_hit_[CellBatch::most], hit_step_[2 * CellBatch::most];
   alignas(64) float edge_[4][CellBatch::most], edge_step_[4][2 * CellBatch::most];
 };
 
-/// Working memory of rasterizing a batch.
+/// Working memory for rasterizing a batch.
 struct CoverScratch {
   HitQueue hits;
   CellBlocks blocks;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where rays pass a cell: the segments of a queue of hits, a hit a lane, whichever cell it is of. Included once per
+// Computes where rays pass a cell: the segments of a queue of hits, one hit per lane, of any cell. Included once per
 // instruction set (Highway's include guard idiom).
 //
 // What      The signs of the inner edge functions E (lattice_shapes-inl.h) select the two faces that a ray passes:
 //             two and two     face 0 or 1 by the sign of E_1, face 2 or 3 by that of E_2;
 //             one and three   face 0, and of the three: 1 where E_0 and E_1 are positive, else 2 or 3 by that of E_2.
-//           A face is a plane over the square's pixels: depth = start + x d_x + y d_y, scalar and weight likewise, with
-//           (x, y) the pixel counted from the square's centre. The nearer of the two depths is the segment's front.
-// How       Columns and rows are 16-bit halves of one number, gradients too, so that a pair of products is one
-//           instruction (dot_of_halves); a gradient's upper 16 bits take a second one. Under perspective the planes are
-//           those of 1 / w and q / w, relative to corner c of the face: q = q_c + plane / weight.
-// Bits      Integers, and float operations of one lane: cells with a common face compute the same bits there.
-// Ends      Signs that float does not decide are settled exactly, out of line (30 hits in a million).
+//           A face is a plane over the square's pixels: depth = start + x d_x + y d_y, scalar and weight in the same
+//           way, with (x, y) the pixel relative to the square's centre. The nearer of the two depths is the segment's
+//           front.
+// How       Columns and rows are 16-bit halves of one integer, and so are gradients, so that a pair of products is one
+//           instruction (dot_of_halves); the upper 16 bits of a gradient take a second one. Under perspective, the
+//           planes are those of 1 / w and q / w, relative to corner c of the face: q = q_c + plane / weight.
+// Bits      Integers, and float operations within a lane: cells with a common face compute the same bits there.
+// Ends      Signs that float does not decide are determined exactly, out of line (30 hits in a million).
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
@@ -29,14 +30,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Pairs of 16 bits, added.
+/// Adds pairs of 16-bit integers.
 HWY_INLINE VI add_pairs(VI a, VI b) {
   const hn::Repartition<std::int16_t, DI> pairs;
   return BitCast(DI(), BitCast(pairs, a) + BitCast(pairs, b));
 }
 
 #if HWY_TARGET <= HWY_AVX2
-/// What is true of some of as many cells as there are lanes, for lanes to ask.
+/// Flags of as many cells as there are lanes, for lookups by lanes.
 struct CellFlags {
   VI three, behind;
   HWY_INLINE CellFlags(const CellParts& parts, int from)
@@ -44,8 +45,8 @@ struct CellFlags {
         behind(Set(DI(), static_cast<std::int32_t>(parts.behind >> from))) {}
 };
 
-/// What lanes ask of their hits' cells: whichever each is of, of as many as there are lanes, from `from` on. Their
-/// numbers are one vector to permute from; with AVX-512 one permute takes the one or the other of two.
+/// Values of the hits' cells, each hit of any cell among as many as there are lanes, from `from` on. A value of all
+/// these cells is one vector to permute from; with AVX-512, one permutation selects from two vectors.
 template <bool two, bool with_three>
 class AnyCell {
  public:
@@ -59,7 +60,7 @@ class AnyCell {
     const hn::ScalableTag<T> d;
     return TableLookupLanes(Load(d, numbers + from_), IndicesFromVec(d, cell_));
   }
-  /// To choose the second of two numbers.
+  /// Selects the second of two values.
 #if HWY_TARGET <= HWY_AVX3
   using Choice = VI;
   HWY_INLINE Choice choice(MI second) const { return or_where(second, cell_, Set(DI(), CellBatch::most)); }
@@ -81,7 +82,7 @@ class AnyCell {
 };
 #endif
 
-/// The same where all hits are of one cell.
+/// The same, if all hits are of one cell.
 template <bool is_three>
 class OneCell {
  public:
@@ -118,13 +119,12 @@ class HitCrossing {
     center_pixel_ = Set(DI(), (CellBatch::center - rect.y0) * rect.width() + CellBatch::center - rect.x0);
   }
 
-  /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
-  /// permuting.
+  /// Whether hits of as many cells as lanes can be crossed together: if lanes find their cells' values by permuting.
   static constexpr bool together = lanes >= 8;
 
 #if HWY_TARGET <= HWY_AVX2
-  /// As many hits of the cells from `from` on as fill lanes; the rest stays. `two`, `three`: the shapes that their
-  /// cells may have.
+  /// Crosses as many hits of the cells from `from` on as fill lanes; the rest stays. `two`, `three`: the shapes that
+  /// the cells may have.
   template <bool two, bool three>
   HWY_INLINE void drain(HitQueue& queue, int from) {
     const DI d;
@@ -135,7 +135,7 @@ class HitCrossing {
     Store(Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
-  /// The rest too.
+  /// Crosses the rest, too.
   template <bool two, bool three>
   HWY_INLINE void finish(HitQueue& queue, int from) {
     drain<two, three>(queue, from);
@@ -144,7 +144,8 @@ class HitCrossing {
     queue.size = 0;
   }
 #endif
-  /// What a cell has added; where they are crossed all together it waits for others, up to finish_cells().
+  /// Crosses the hits that a cell has added; if hits of all cells are crossed together, they may wait for others, until
+  /// finish_cells().
 #if HWY_TARGET <= HWY_AVX3
   HWY_INLINE void drain_cell(HitQueue& queue, int t) {
     if (queue.size < HitQueue::worth_draining) return;
@@ -178,7 +179,7 @@ class HitCrossing {
   }
 #endif
 
-  /// Appends the segments of `count` hits, of the cells that `cells` finds numbers of.
+  /// Appends the segments of `count` hits; `cells` provides the values of their cells.
   template <class Cells>
   HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
     const DI d;
@@ -186,7 +187,7 @@ class HitCrossing {
     const VI hit = LoadU(d, hits);
     const VI place = place_of(hit);
     InnerEdges inner = inner_edges(hit, place, count, cells);
-    // What settle() changes is in memory: a copy, so that what it does not change stays in registers.
+    // A copy, because settle() changes it in memory: so the original stays in registers.
     const bool settled = HWY_UNLIKELY(!AllFalse(df, inner.uncertain));
     if (settled) {
       InnerEdges exact = inner;
@@ -197,7 +198,7 @@ class HitCrossing {
     const PassedFaces<Cells> faces(cells, inner.edge);
     const Crossing first = crossing([&](const CellParts::ByFace& n) HWY_ATTR { return faces.first(n); }, place, cells);
     Crossing second = crossing([&](const CellParts::ByFace& n) HWY_ATTR { return faces.second(n); }, place, cells);
-    // A ray that only touches the cell is inside it for no distance.
+    // A ray that only touches the cell has no distance inside it.
     if (settled) second.depth = IfThenElse(RebindMask(d, inner.touching), first.depth, second.depth);
     const MF swapped = RebindMask(df, cells.behind());
     const SegmentLanes segments{Min(first.depth, second.depth), Max(first.depth, second.depth),
@@ -212,7 +213,7 @@ class HitCrossing {
     }
   }
 
-  /// Column and row of hits from the square's centre, 16 bits each.
+  /// Column and row of hits relative to the square's centre, 16 bits each.
   static HWY_INLINE VI place_of(VI hit) {
     const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
@@ -220,11 +221,11 @@ class HitCrossing {
     return add_pairs(And(ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
   }
 
-  /// The inner edge functions at hits, and which of the hits are of their cells after all.
+  /// The inner edge functions at hits, and which of the hits are confirmed.
   struct InnerEdges {
-    VF edge[3];              ///< CellParts::inner; the first is zero where no cell has three
-    MF uncertain;            ///< where float does not decide a sign
-    MF hits_cell, touching;  ///< set by settle(); before it all lanes with a hit
+    VF edge[3];              ///< as in CellParts::inner; the first is zero if no cell has three
+    MF uncertain;            ///< lanes where float does not decide a sign
+    MF hits_cell, touching;  ///< set by settle(); before it, all lanes with a hit
   };
   template <class Cells>
   HWY_INLINE InnerEdges inner_edges(VI hit, VI place, std::size_t count, const Cells& cells) const {
@@ -247,7 +248,7 @@ class HitCrossing {
     return inner;
   }
 
-  /// The two faces that lanes' rays pass, by their places in Roles::face.
+  /// The two faces that the lanes' rays pass, by their positions in Roles::face.
   template <class Cells>
   class PassedFaces {
    public:
@@ -257,14 +258,14 @@ class HitCrossing {
           last_(cells.choice(RebindMask(DI(), inner[2] <= Zero(DF())))),
           first_of_three_(RebindMask(DI(), And(inner[0] > Zero(DF()), inner[1] > Zero(DF())))) {}
 
-    /// The front faces', or that of one face against three.
+    /// The front face's value, or that of one face against three.
     HWY_INLINE VI first(const CellParts::ByFace& numbers) const {
       if constexpr (!Cells::may_be_two)
         return cells_.number(numbers[0]);
       else
         return cells_.number(numbers[0], numbers[1], first_of_two_);
     }
-    /// The back faces', or that of the three on whose side of its edges with the others the ray passes.
+    /// The back face's value, or that of the one among three faces that the inner edges select.
     HWY_INLINE VI second(const CellParts::ByFace& numbers) const {
       const VI others = cells_.number(numbers[2], numbers[3], last_);
       if constexpr (!Cells::may_be_three) return others;
@@ -288,7 +289,7 @@ class HitCrossing {
     VI depth;
     VF scalar;
   };
-  /// `of_face(numbers)`: in every lane that of the face that its ray passes.
+  /// `of_face(values)`: in every lane, the value of the face that its ray passes.
   template <class OfFace, class Cells>
   HWY_INLINE Crossing crossing(const OfFace& of_face, VI place, const Cells& cells) const {
     const DF df;
@@ -310,11 +311,11 @@ class HitCrossing {
     return c;
   }
 
-  /// 1 / weight, of a plane's integers.
+  /// 1 / weight, from a plane's integers.
   static HWY_INLINE VF inverse_weight(VI weight) {
     const DF d;
     const VF w = ConvertTo(d, weight);
-    // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
+    // One Newton step improves the estimate (11 to 14 bits) to the accuracy of a float.
     const VF estimate = ApproximateReciprocal(w);
     return estimate * NegMulAdd(w, estimate, Set(d, 2.0f)) * Set(d, CellBatch::weight_one);
   }
@@ -323,7 +324,7 @@ class HitCrossing {
   HWY_INLINE void append_all(std::size_t count, VI hit, VI pixel, const SegmentLanes& segments) {
     const DI d;
     const DF df;
-    // Read before the first store, which might be to any of them as far as a compiler can tell.
+    // Read before the first store, which could write to any of them as far as a compiler can determine.
     const std::size_t at = out_.size;
     std::int32_t *const pixels = out_.pixel.data(), *const fronts = out_.front.data(), *const backs = out_.back.data();
     float *const scalar_fronts = out_.scalar_front.data(), *const scalar_backs = out_.scalar_back.data();
@@ -334,7 +335,7 @@ class HitCrossing {
     out_.size = at + count;
   }
 
-  /// Exact signs for the uncertain lanes.
+  /// Determines exact signs for the uncertain lanes.
   HWY_NOINLINE void settle(unsigned uncertain, const std::int32_t* hits, InnerEdges& inner) {
     const DF df;
     alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};
@@ -375,7 +376,7 @@ class HitCrossing {
   const MaskedRect& pixels_;
   SegmentStream& out_;
   RasterCounts& counts_;
-  VI pixel_step_, center_pixel_;  ///< a row's pixels and one in 16 bits each; of column and row 0
+  VI pixel_step_, center_pixel_;  ///< pixels in a row and 1, in 16 bits each; the pixel of column and row 0
 };
 
 }  // namespace HWY_NAMESPACE

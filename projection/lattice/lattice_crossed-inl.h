@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of a batch's segments may cross a surface. Included once per instruction set (Highway's include guard idiom).
+// Finds the segments of a batch that may cross a surface. Included once per instruction set (Highway's include guard
+// idiom).
 //
-// What   The numbers of the segments whose scalars reach from below the highest of their cell's surfaces to the lowest
+// What   The indices of the segments whose scalars extend from below the highest of their cell's surfaces to the lowest
 //        or above, packed; and their cells.
 // Ends   A superset: lattice_cut-inl.h compares with each surface's value.
 
@@ -22,14 +23,15 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Numbers of `count` segments, followed by any for a vector of lanes, and their cells, a bit each.
+/// Indices of `count` segments, with padding for a vector of lanes behind them, and their cells, one bit each.
 struct CrossedSegments {
   const std::int32_t* numbers;
   std::size_t count;
   unsigned cells;
 };
 
-/// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
+/// The segments from `first` on whose scalars extend from below the last of their cell's surfaces to the first or
+/// above.
 HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
                                                      LatticeSurfaces& surfaces) {
   const DI d;
@@ -45,7 +47,7 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
     const auto reaches =
         And(Max(from, to) >= lookup_16(surfaces.low, cell), Min(from, to) < lookup_16(surfaces.high, cell));
     const auto is = And(reaches, FirstN(df, stream.size - i));
-    // Without a branch, which would go either way.
+    // Without a branch, because it would be unpredictable.
     const LanePacker pack(RebindMask(d, is));
     StoreU(pack(number), d, crossed + count);
     count += pack.count();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts segments where they cross iso-surfaces, a segment a lane. Included once per instruction set (Highway's include
-// guard idiom).
+// Cuts segments where they cross iso-surfaces, one segment per lane. Included once per instruction set (Highway's
+// include guard idiom).
 //
 // What      A segment from depth z_0 to z_1 with scalars s_0 to s_1 crosses the surface of value v, if v is between
 //           them, at the depth z_0 + (v - s_0) (z_1 - z_0) / (s_1 - s_0), rounded to a step of the lattice. It becomes
-//           the parts between its crossings; a part's front scalar is the mark of the crossing that it begins at
+//           the parts between its crossings; a part's front scalar is the mark of the crossing at which it begins
 //           (surface_crossings.hpp).
-// Accuracy  Depths in double precision, half a step. Cosines of normal and ray in double, stored in LatticeMark's bits.
-// Bits      Values and scalars are rounded as the vertices' are, so cells with a common face agree whether a ray
-//           crosses a surface in it.
-// Ends      A crossing at a segment's back end is a segment of its own, as is the first of two at its front.
+// Accuracy  Depths in double precision, rounded to half a step. Cosines of normal and ray in double precision, stored
+//           with LatticeMark's bits.
+// Bits      Values and scalars are rounded in the same way as those of vertices, so cells with a common face agree on
+//           whether a ray crosses a surface in it.
+// Ends      A crossing at a segment's back end is a segment of its own, and so is the first of two at its front.
 
 #if defined(TESSERA_PROJECTION_LATTICE_CUT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CUT_INL_H_
@@ -30,8 +31,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Cuts segments of the batch whose cells find_surfaces() and find_normals() were called for, and appends what is
-/// before a crossing, or the crossing itself (surface_crossings.hpp). A segment's own place holds its last part.
+/// Cuts segments of a batch, after find_surfaces() and find_normals(). Appends the part before each crossing, or the
+/// crossing itself (surface_crossings.hpp); a segment's own place keeps its last part.
 class SurfaceCuts {
  public:
   HWY_INLINE SurfaceCuts(const LatticeView& view, const LatticeSurfaces& surfaces, const MaskedRect& pixels,
@@ -53,7 +54,7 @@ class SurfaceCuts {
   }
 
  private:
-  /// Perspective: directions of the square's rays, at its first pixel, and from one to the next.
+  /// Perspective: the direction of the ray at the square's first pixel, and its change from pixel to pixel.
   struct Rays {
     glm::dvec3 corner{}, right{}, down{};
     Rays(const PixelSpace& space, int x0, int y0) {
@@ -64,7 +65,7 @@ class SurfaceCuts {
     }
   };
 
-  /// A part of the segments in the making: where it begins, and with which scalar or mark.
+  /// The current parts of the segments: where they begin, and their front scalar or mark.
   struct Part {
     VI front;
     VF scalar;
@@ -82,7 +83,7 @@ class SurfaceCuts {
     const VI first = lookup_16(cells_.first, cell);
     const VI count = IfThenElseZero(here, lookup_16(cells_.count, cell));
     const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
-    // Each crossing appends one.
+    // Each crossing appends one segment.
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
       out_.reserve(2 * (out_.size + most * lanes));
 
@@ -110,7 +111,7 @@ class SurfaceCuts {
           IfThenElse(at_back, at_limit, IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
       depth = Min(depth, limit);
       const VF mark = mark_of(surface, rises, at, cosine);
-      // One at the back end stands alone; so does the first of two at the front.
+      // A crossing at the back end is a segment of its own, and so is the first of two at the front.
       const MI alone = And(crossed, Or(at == place(Place::back_end), level));
       const MI before = AndNot(alone, crossed);
       const MI at_front = And(before, depth == part.front);
@@ -122,7 +123,7 @@ class SurfaceCuts {
       part.front = IfThenElse(before, depth, part.front);
       part.scalar = IfThenElse(RebindMask(df, before), mark, part.scalar);
     }
-    // Lanes without a segment go behind the last.
+    // Lanes without a segment write behind the last one.
     const VI spare = Iota(d, 0) + Set(d, static_cast<std::int32_t>(out_.size));
     const VI own = IfThenElse(here, segment, spare);
     ScatterIndex(part.front, d, out_.front.data(), own);
@@ -130,15 +131,15 @@ class SurfaceCuts {
   }
 
   using Place = scene::SurfaceSet::Place;
-  /// The lowest number of a crossing there.
+  /// The lowest number of a crossing at this place.
   HWY_INLINE VI place(Place p) const { return Set(DI(), static_cast<std::int32_t>(p) * numbers_a_place_); }
 
-  /// The surfaces that the cells' segments may cross first.
+  /// The first surfaces that the cells' segments may cross.
   HWY_INLINE VF first_values(MI rises, VI cell) const {
     return IfThenElse(RebindMask(DF(), rises), lookup_16(cells_.low, cell), lookup_16(cells_.high, cell));
   }
 
-  /// LatticeMark::of(the crossing).
+  /// Same as LatticeMark::of(the crossing).
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
     const DI d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());

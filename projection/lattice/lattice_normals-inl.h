@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cells of a batch have iso-surfaces, and their normals, a cell a lane. Included once per instruction set
-// (Highway's include guard idiom).
+// Finds the cells of a batch that have iso-surfaces, and their normals, one cell per lane. Included once per
+// instruction set (Highway's include guard idiom).
 //
 // How       The field of a cell is s(p) = s_0 + g . (p - p_0). With the edges e_i = p_i - p_0 from corner 0, and the
 //           changes c_i of the scalar along them, e_i . g = c_i; Cramer's rule gives the direction of the gradient,
 //             g ~ c_1 (e_2 x e_3) + c_2 (e_3 x e_1) + c_3 (e_1 x e_2),
-//           which is all that shading needs: a normal has unit length, and both its sides are lit.
-// Accuracy  Double precision; edges and changes are scaled to one first, so that no product leaves its range.
-// Ends      A cell that is flat, of no size or of one scalar has no normal (zero).
+//           which is all that shading needs: a normal has unit length, and both of its sides are lit.
+// Accuracy  Double precision; edges and changes are first scaled to 1, so that no product leaves the range of a double.
+// Ends      A cell that is flat, without extent or with a single scalar has no normal (zero).
 
 #if defined(TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
@@ -29,7 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Three coordinates of as many cells as lanes.
+/// Three coordinates, for as many cells as there are lanes.
 struct Vectors {
   VD x, y, z;
 };
@@ -42,7 +42,7 @@ HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
 }
 HWY_INLINE VD largest(const Vectors& v) { return Max(Max(Abs(v.x), Abs(v.y)), Abs(v.z)); }
 
-/// unit(gradient_direction()) of surface_crossings.hpp but for rounding, a cell a lane.
+/// Same as unit(gradient_direction()) of surface_crossings.hpp, except for rounding; one cell per lane.
 HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[4]) {
   const VD zero = Zero(DD());
   Vectors edge[3];
@@ -52,21 +52,21 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[
     change[i] = scalar[i + 1] - scalar[0];
     size = Max(size, largest(edge[i])), most = Max(most, Abs(change[i]));
   }
-  // Edges of size one: of no mesh do squares or products of them leave a double's range.
+  // Edges of size 1: for no mesh do squares or products of them leave the range of a double.
   const VD one = Set(DD(), 1), per_size = one / size, per_change = one / most;
   const Vectors e1 = edge[0] * per_size, e2 = edge[1] * per_size, e3 = edge[2] * per_size;
   const VD c1 = change[0] * per_change, c2 = change[1] * per_change, c3 = change[2] * per_change;
   const Vectors direction = cross(e2, e3) * c1 + cross(e3, e1) * c2 + cross(e1, e2) * c3;
   const VD square = dot(direction, direction);
   const Vectors unit = direction * (one / Sqrt(square));
-  // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
+  // For a cell that is flat, without extent or with a single scalar, the divisions gave NaN.
   const VD least = Set(DD(), 1e-300);
   const auto is = And(square > zero, And(size > least, most > least));
   return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
 
-/// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
-/// their time.
+/// Computes the normals and cosines of some of a batch's cells, one bit each. To be called some time after
+/// find_surfaces(), so that its prefetches can complete.
 HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
                                       LatticeSurfaces& surfaces) {
   const DD d;
@@ -113,7 +113,7 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
   }
 }
 
-/// What find_normals() will read of cell t.
+/// Prefetches the data of cell t that find_normals() will read.
 HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch, int t) {
   const scene::TetMeshView& mesh = view.projected.mesh->mesh();
   for (const std::uint32_t v : view.projected.mesh->tets()[batch.tet[t]]) {
@@ -122,10 +122,10 @@ HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch
   }
 }
 
-/// Which of a batch's cells have surfaces, a bit each; irregular ones are taken to have none.
+/// The cells of a batch that have surfaces, one bit each; irregular ones are treated as having none.
 HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
-  // Rounding may move a scalar over a value: a float's last place (64 steps at most), the value's own, and a gradient's
-  // over the square.
+  // By rounding, a scalar may cross a value: the last place of a float (64 steps at most), the value's own rounding,
+  // and a gradient's over the square.
   constexpr float margin = 256;
   const DF df;
   const DI d;

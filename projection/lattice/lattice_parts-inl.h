@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A batch's cells with their edges and faces in the order of the parts that they play (lattice_shapes-inl.h), so that
-// lanes with unlike cells do the same. Included once per instruction set (Highway's include guard idiom).
+// A batch's cells, with their edges and faces in the order of their roles (lattice_shapes-inl.h), so that lanes with
+// different cells execute the same code. Included once per instruction set (Highway's include guard idiom).
 //
-// What   CellParts: outline, inner edges and face planes by part, a cell a lane; and the queue of hits between
+// What   CellParts: outline, inner edges and face planes by role, one cell per lane; and the queue of hits between
 //        lattice_cover-inl.h, which finds them, and lattice_cross-inl.h, which makes them segments.
-// How    The part that an edge or a face plays follows from the four bits of the front faces: a table of 16 entries
-//        names the edge or face, and selects move its numbers to the part's place.
-// Bits   Numbers are moved, not computed. A face plane's steps are cut in 16-bit halves, whose products with a column
-//        or row are exact in 32 bits.
+// How    The role of an edge or a face follows from the four bits of the front faces: a table of 16 entries contains
+//        the edge or face, and selects move its values to the place of the role.
+// Bits   Values are moved, not computed. A face plane's steps are split into 16-bit halves, whose products with a
+//        column or row are exact in 32 bits.
 
 #if defined(TESSERA_PROJECTION_LATTICE_PARTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_PARTS_INL_H_
@@ -28,10 +28,10 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Which edge or face plays a part: [part][front faces].
+/// The edge or face in a role: [role][front faces].
 struct PartTable {
   alignas(64) std::int32_t outline[4][16];  ///< Roles::outline
-  /// Of one face against three: Roles::inner. Of two against two: none, the front faces', the back faces'.
+  /// One face against three: Roles::inner. Two against two: none, the edge of the front faces, that of the back faces.
   alignas(64) std::int32_t inner[3][16];
   alignas(64) std::int32_t face[4][16];                       ///< Roles::face
   alignas(64) std::int32_t three[16], behind[16], valid[16];  ///< 1 or 0; Roles::single_behind, Roles::valid
@@ -51,20 +51,20 @@ constexpr PartTable make_part_table() {
 }
 constexpr PartTable part_table = make_part_table();
 
-/// Whether some valid cell has `what` in a part.
+/// Whether some valid cell has `what` in a role.
 constexpr bool occurs(const std::int32_t (&part)[16], std::int32_t what) {
   for (unsigned front = 0; front < 16; ++front)
     if (role_table.roles[front].valid && part[front] == what) return true;
   return false;
 }
 
-/// Numbers by cell of the batch. Edge functions are start + x column + y row, counted from the square's centre
-/// (CellBatch); planes likewise, where x is 2^16 high.x + low.x, with (x, y) in one number's lower and upper 16 bits.
+/// Values by cell of the batch. Edge functions are start + x column + y row, relative to the square's centre
+/// (CellBatch). So are planes, with x = 2^16 high.x + low.x, and (x, y) in the lower and upper 16 bits of one integer.
 struct CellParts {
   struct Edge {
     alignas(64) float start[CellBatch::most], x[CellBatch::most], y[CellBatch::most];
   };
-  /// Numbers of the faces in the order of Roles::face.
+  /// Values of the faces in the order of Roles::face.
   using ByFace = std::int32_t[4][CellBatch::most];
   struct Planes {
     alignas(64) ByFace start, low, high;
@@ -72,11 +72,11 @@ struct CellParts {
 
   Edge outline[4], inner[3];
   Planes depth, scalar, weight;
-  alignas(64) ByFace depth_c, scalar_c;  ///< the latter floats
-  unsigned three, behind;                ///< bit t: one face against three; that one is the back face
+  alignas(64) ByFace depth_c, scalar_c;  ///< scalar_c contains floats
+  unsigned three, behind;                ///< bit t: one face against three; this face is the back face
 };
 
-/// Orders the parts of a batch's cells [from, from + lanes).
+/// Sorts the parts of a batch's cells [from, from + lanes).
 class PartOrder {
  public:
   HWY_INLINE PartOrder(const CellBatch& batch, int from, CellParts& parts)
@@ -85,7 +85,8 @@ class PartOrder {
         front_(And(BitCast(DI(), Load(hn::RebindToUnsigned<DI>(), batch.bits + from)), Set(DI(), 15))),
         parts_(parts) {}
 
-  /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
+  /// Sets `three` and `behind`, which must be zero before the first call. Returns the cells with candidate pixels, one
+  /// bit each.
   HWY_INLINE unsigned shapes() const {
     const DI d;
     const auto is = [&](const std::int32_t* table) HWY_ATTR { return lookup_16(table, front_) != Zero(d); };
@@ -97,7 +98,7 @@ class PartOrder {
     return bits(And(is(part_table.valid), And(columns, rows)));
   }
 
-  /// Sets all the rest that such a view of such a mesh uses.
+  /// Sets all other values that are used with this type of view and mesh.
   template <bool perspective, bool per_cell>
   HWY_INLINE void order() const {
     edges<0>(), edges<1>(), edges<2>(), edges<3>();
@@ -129,7 +130,7 @@ class PartOrder {
   HWY_INLINE void edge(const std::int32_t* part, CellParts::Edge& to) const {
     const DF df;
     const VI which = lookup_16(part, front_);
-    // Where there is none, surely not positive.
+    // If there is no edge, the value is certainly not positive.
     VF start = Set(df, -4.0f), x = Zero(df), y = x;
     edges_of<k, inner>(which, start, x, y, std::make_integer_sequence<int, 6>());
     Store(start, df, to.start + from_), Store(x, df, to.x + from_), Store(y, df, to.y + from_);
@@ -161,7 +162,7 @@ class PartOrder {
       Store(number_of(face[k], all.start), d, to.start[k] + from_);
       const VI low = Set(d, 0xffff);
       Store(Or(And(x, low), ShiftLeft<16>(y)), d, to.low[k] + from_);
-      // The lower part is signed: where it is negative the upper one is one more.
+      // The low half is signed: if it is negative, the high half is one greater.
       const auto high = [](VI v) HWY_ATTR { return v + Set(DI(), 0x8000); };
       Store(Or(BitCast(d, ShiftRight<16>(BitCast(hn::RebindToUnsigned<DI>(), high(x)))), AndNot(low, high(y))), d,
             to.high[k] + from_);
@@ -174,8 +175,9 @@ class PartOrder {
   CellParts& parts_;
 };
 
-/// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square, 16 bits
-/// apart as in CellParts. `uncertain` marks those at an edge of the outline, where float does not decide.
+/// Pixels that rays of a batch's cells may hit, encoded in one integer each: the cell, and column and row in the
+/// square, 16 bits apart as in CellParts. `uncertain` marks those close to an edge of the outline, where float does not
+/// decide.
 struct Hit {
   static constexpr int column_bit = 4, row_bit = column_bit + 16;
   static constexpr std::int32_t uncertain = 1 << 15;
@@ -183,7 +185,7 @@ struct Hit {
 /// Hits that wait to be crossed.
 struct HitQueue {
   static constexpr std::size_t worth_draining = 512;
-  static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;  ///< with what one cell adds
+  static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;  ///< with those of one more cell
 
   std::size_t size = 0;
   alignas(64) std::int32_t hit[most + lanes];

@@ -18,14 +18,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Not by Highway's emulated lanes: double precision does the same in less time.
+/// Not with Highway's emulated lanes: double precision takes less time.
 bool available() { return HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128; }
 
 #if HWY_TARGET == HWY_SCALAR
 void rasterize(const LatticeView&, const ListedCells&, const MaskedRect&, LatticeScratch&, SegmentStream&,
                RasterCounts&) {}
 #else
-/// Those of `cells` (a bit each of the batch) whose candidate pixels are not all closed.
+/// The subset of `cells` (one bit each) whose candidate pixels are not all closed.
 HWY_INLINE unsigned open_cells(const CellBatch& batch, const MaskedRect& pixels, unsigned cells) {
   const scene::PixelRect rect = pixels.in_square();
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << rect.x0;
@@ -43,7 +43,7 @@ HWY_INLINE unsigned open_cells(const CellBatch& batch, const MaskedRect& pixels,
   return cells;
 }
 
-/// A batch that is set up: covers the pixels of its regular cells and appends their segments.
+/// After set-up of a batch: covers the pixels of its regular cells and appends their segments.
 template <bool perspective, bool per_cell>
 void rasterize_cells(const LatticeView& view, const CellBatch& batch, const MaskedRect& pixels, CoverScratch& scratch,
                      SegmentStream& out, RasterCounts& counts) {
@@ -71,7 +71,7 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Mask
   }
   if (cells == 0) return;
   scratch.blocks.lay(batch, parts, pixels.in_square());
-  // Cells of one shape after the other, so that branches go the same way.
+  // Cells of one shape after those of the other, so that branches are predictable.
   const auto cover = [&](unsigned of_shape) HWY_ATTR {
     for (; of_shape != 0; of_shape &= of_shape - 1) {
       const int t = __builtin_ctz(of_shape);
@@ -85,7 +85,7 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Mask
   crossing.template finish_cells<false, true>(hits);
 }
 
-/// An irregular cell, from double precision to the lattice.
+/// Rasterizes an irregular cell in double precision and converts its segments to the lattice.
 HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const scene::PixelRect& rect,
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
   const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);

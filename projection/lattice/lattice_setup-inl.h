@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Set-up of the lattice rasterizer: sixteen cells at once, a cell a lane, in double precision. Included once per
+// Set-up of the lattice rasterizer: sixteen cells at once, one cell per lane, in double precision. Included once per
 // instruction set (Highway's include guard idiom).
 //
-// What      Of every cell the pixels it may cover, its front faces, six edge functions in float, and its four faces'
-//           planes of depth, scalar and (perspective) weight in integers.
+// What      For every cell: the pixels that it may cover, its front faces, six edge functions in float, and the planes
+//           of depth, scalar and (perspective) weight of its four faces in integers.
 //
 //                 3            Edges 0 to 5 = 01, 02, 03, 12, 13, 23, each of two faces.
 //                /|\           Faces 0 to 3 = 012, 013, 023, 123.
@@ -13,17 +13,17 @@
 //                \|/           Its sign is the side of the edge on which the ray passes.
 //                 1
 //
-// How       A face (a, b, c) has the area A = (b - a) x (c - a). It is a front face if A, turned outward, has the sign
-//           of the cell's volume in (x, y, order), where order grows with depth: depth itself, or -1 / depth under
-//           perspective, which is linear in the image as depth is not. A quantity q that is linear on the face has, by
-//           Cramer's rule, these steps from pixel to pixel:
+// How       A face (a, b, c) has the area A = (b - a) x (c - a). It is a front face if A, oriented outward, has the
+//           sign of the cell's volume in (x, y, order), where order increases with depth: depth itself or, under
+//           perspective, -1 / depth, which is linear in the image, unlike depth. A quantity q that is linear on the
+//           face has, by Cramer's rule, these steps from pixel to pixel:
 //             q_x = ((q_b - q_a) (c - a)_y - (q_c - q_a) (b - a)_y) / A,
 //             q_y = ((b - a)_x (q_c - q_a) - (c - a)_x (q_b - q_a)) / A.
-// Accuracy  E is divided by the bound of its rounding error: |E| > 1 is certain. Planes are rounded to whole steps of
-//           the lattice a pixel: 16 steps within the square at most.
-// Bits      Corners are in canonical order and each quotient depends on one face alone, so that cells which share a
-//           face have equal planes. -ffp-contract=off: areas of edge-on faces come out zero.
-// Ends      Cells that this precision does not suffice for are `irregular`, left to rasterize_planes().
+// Accuracy  E is divided by the bound of its rounding error: |E| > 1 is certain. Planes are rounded to integer steps of
+//           the lattice per pixel: at most 16 steps within the square.
+// Bits      Corners are in canonical order, and each quotient depends on one face alone, so that cells that share a
+//           face have equal planes. -ffp-contract=off: areas of edge-on faces become zero.
+// Ends      Cells for which this precision is not sufficient are `irregular` and left to rasterize_planes().
 
 #if defined(TESSERA_PROJECTION_LATTICE_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_SETUP_INL_H_
@@ -45,21 +45,21 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
-// Edges by their corners i < j with the two faces they are in, and faces by their corners a < b < c.
+// Edges by their corners i < j, with the two faces that contain them, and faces by their corners a < b < c.
 constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
 constexpr int edge_faces[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
 constexpr int face_corners[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-/// (a, b, c) turns the way that (0, 1, 2) does, seen from outside the cell.
+/// Whether (a, b, c) has the orientation of (0, 1, 2), seen from outside the cell.
 constexpr bool face_outward[4] = {true, false, true, false};
-/// E of the edge is positive inside its first face if that face's area is, turned outward.
+/// Whether E of the edge is positive inside its first face if that face's area, oriented outward, is positive.
 constexpr bool edge_inward[6] = {true, false, true, true, false, true};
 
-/// Sixteen cells ready for their pixels. Pixels are numbered from the square's corner; planes and edge functions start
-/// at the centre of pixel (center, center).
+/// Sixteen cells after set-up. Pixels are numbered from the square's corner; planes and edge functions are relative to
+/// the centre of pixel (center, center).
 struct CellBatch {
   static constexpr int most = 16, center = 16;
   static constexpr float weight_one = 0x1p30f;
-  /// A quantity on faces 0 to 3: steps from pixel to pixel, and at the centre.
+  /// A quantity on faces 0 to 3: its steps from pixel to pixel, and its value at the centre.
   struct FacePlanes {
     alignas(64) std::int32_t start[4][most], x[4][most], y[4][most];
   };
@@ -67,28 +67,28 @@ struct CellBatch {
   int size;
   unsigned irregular;  ///< bit t: left to the double-precision rasterizer
   std::uint32_t tet[most];
-  alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half open
+  alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half-open ranges
   alignas(64) std::uint32_t bits[most];                             ///< front_faces(), edge_on(), flipped()
-  // E / (its rounding error), positive inside the first of the edge's faces.
+  // E divided by its rounding error, positive inside the first of the edge's faces.
   alignas(64) float edge[6][most], edge_x[6][most], edge_y[6][most];
-  // Planes of faces 0 to 3: depth (perspective: depth behind corner c, times weight), scalar likewise, and weight (w of
-  // the nearest corner / w, times 2^30).
+  // Planes of faces 0 to 3: depth (perspective: depth relative to corner c, times weight), scalar in the same way, and
+  // weight (w of the nearest corner / w, times 2^30).
   FacePlanes depth, scalar, weight;
   alignas(64) std::int32_t depth_c[4][most];
   alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
-  alignas(64) float scalar_low[most], scalar_high[most];  ///< of a cell's corners; where there are surfaces alone
+  alignas(64) float scalar_low[most], scalar_high[most];  ///< of a cell's corners; only with surfaces
 
   static constexpr int front_bit = 0, edge_on_bit = 8, flipped_bit = 16;
-  /// Bit f: a front face. Meaningless for an irregular cell.
+  /// Bit f: face f is a front face. Undefined for an irregular cell.
   [[nodiscard]] unsigned front_faces(int t) const { return bits[t] >> front_bit & 15; }
-  /// Bit f: seen edge-on.
+  /// Bit f: face f is seen edge-on.
   [[nodiscard]] unsigned edge_on(int t) const { return bits[t] >> edge_on_bit & 15; }
   /// Bit e: the stored edge function is -E.
   [[nodiscard]] unsigned flipped(int t) const { return bits[t] >> flipped_bit & 63; }
 };
 
-/// Nearest integers modulo 2^32 of |v| < 2^51: in the sum with 1.5 * 2^52 the lowest bit counts ones.
+/// Nearest integers modulo 2^32, for |v| < 2^51: in the sum with 1.5 * 2^52, the lowest bit has the value 1.
 HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, DD>> wrapped(VD v) {
   const DD d;
   const hn::RebindToUnsigned<DD> du;
@@ -97,7 +97,7 @@ HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, DD>> wrapped(VD v) {
   return BitCast(di32, TruncateTo(du32, BitCast(du, v + Set(d, 0x1.8p52))));
 }
 
-/// A plane over the square: value at its centre and steps.
+/// A plane over the square: its value at the centre, and its steps.
 struct Plane {
   VD start, x, y;
 };
@@ -108,7 +108,7 @@ struct FaceShape {
   VD inverse_area;  ///< set by find_sides()
 };
 
-/// The face's plane through the values q at its corners.
+/// The face's plane through the given values at its corners.
 HWY_INLINE Plane plane_of(const FaceShape& face, VD at_a, VD at_b, VD at_c) {
   const VD to_b = at_b - at_a, to_c = at_c - at_a;
   Plane plane;
@@ -118,7 +118,7 @@ HWY_INLINE Plane plane_of(const FaceShape& face, VD at_a, VD at_b, VD at_c) {
   return plane;
 }
 
-/// Those of face f, of the cells from `from` on.
+/// Stores the planes of face f, for the cells from `from` on.
 HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::FacePlanes& out) {
   const hn::Rebind<std::int32_t, DD> d;
   StoreU(wrapped(plane.start), d, out.start[f] + from);
@@ -126,7 +126,7 @@ HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::Face
   StoreU(wrapped(plane.y), d, out.y[f] + from);
 }
 
-/// Depths outside these are, or may be, outside the clipping range.
+/// Depths outside of these bounds are, or may be, outside the clipping range.
 struct DepthBounds {
   double near, far;  ///< steps
   explicit DepthBounds(const LatticeView& view) {
@@ -139,12 +139,12 @@ struct DepthBounds {
   }
 };
 
-/// Of cells that are deeper than DepthLimits::least_extent: those that are too thin for their rounding (DepthLimits).
+/// Of cells that are deeper than DepthLimits::least_extent: those too thin for their rounding error (DepthLimits).
 template <bool perspective>
 HWY_NOINLINE MD rounded_visibly(const LatticeView& view, VD extent, VD volume, VD twice_area, VD w_product) {
   const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
   const DepthLimits& limits = view.depth_limits;
-  // The longest way through the cell: a third of it times the area that the cell covers is the volume.
+  // The longest path through the cell: a third of it, times the area that the cell covers, is the volume.
   VD chord = Abs(volume) / (twice_area * number(0.5));
   if constexpr (perspective)  // `volume` is of inverse depths there
     chord = chord / (w_product * number(view.lattice.depth_unit));
@@ -158,14 +158,14 @@ HWY_NOINLINE MD rounded_visibly(const LatticeView& view, VD extent, VD volume, V
   return thin;
 }
 
-/// Whether the faces may be seen edge-on.
+/// Whether the faces may be edge-on.
 HWY_INLINE MD thin_face(const FaceShape& face) {
   const VD span = Abs(face.x1) + Abs(face.y1) + (Abs(face.x2) + Abs(face.y2));
   return Abs(face.area) <= span * Set(DD(), 0x1p-9);
 }
 
-/// Whether a face is edge-on for certain: orthographic coordinates and their differences are exact, and the products of
-/// its area are zeros or have the same factors, as where two corners coincide or all line up along an axis.
+/// Whether a face is certainly edge-on: orthographic coordinates and their differences are exact, and the products in
+/// its area are zero or have the same factors, because two corners coincide or all are on a line along an axis.
 HWY_INLINE MD edge_on_for_certain(const FaceShape& face) {
   const auto both_zero = [](VD p, VD q) HWY_ATTR { return And(p == Zero(DD()), q == Zero(DD())); };
   return Or(
@@ -173,15 +173,15 @@ HWY_INLINE MD edge_on_for_certain(const FaceShape& face) {
       Or(Or(both_zero(face.x1, face.y1), both_zero(face.x2, face.y2)), And(face.x1 == face.x2, face.y1 == face.y2)));
 }
 
-/// How the faces of a vector of cells are turned.
+/// The orientation of the faces of a vector of cells.
 struct Sides {
   MD upright;     ///< the cell's volume in (x, y, order) is not negative
   MD front[4];    ///< faces through which rays enter
-  MD edge_on[4];  ///< faces that no ray passes: none but of orthographic views' thin faces
+  MD edge_on[4];  ///< faces that no ray passes: only thin faces of orthographic views
 };
 
-/// Finds which faces are front faces, and sets their inverse areas. `thin`: some face may be edge-on, which few are;
-/// where that is not certain, the cell becomes irregular.
+/// Finds the front faces, and sets the faces' inverse areas. `thin`: some face may be edge-on, which is rare; where
+/// this is not certain, the cell becomes irregular.
 template <bool perspective, bool thin>
 HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
   const VD zero = Zero(DD()), one = Set(DD(), 1);
@@ -201,7 +201,8 @@ HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
     sides.front[f] = Not(Xor(positive, upright));
   }
   if constexpr (thin) {
-    // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
+    // Edge-on faces, which no ray passes, complete both sides: the first one counts as a front face, the others as back
+    // faces.
     MD seen = none;
     for (int f = 0; f < 4; ++f) {
       const MD edge_on = sides.edge_on[f];
@@ -212,8 +213,8 @@ HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
   return sides;
 }
 
-/// `count` numbers: of vertices first, first + 2, first + 4... the first two or the second two (`pair` 0 or 1). Beside
-/// those of the vertices between them, lanes are but to be interleaved to have a vertex each.
+/// `count` values: the first or the second two (`pair` 0 or 1) of the vertices first, first + 2, first + 4...
+/// Interleaved with those of the vertices between, each vertex is in its own lane.
 template <std::size_t count, class Vertex>
 HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   if constexpr (count == 2) {
@@ -225,10 +226,10 @@ HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   }
 }
 
-/// A vector of cells' corners: pixel position from the square's centre, depth and scalar in steps, weight.
+/// A vector of cells' corners: pixel position relative to the square's centre, depth and scalar in steps, weight.
 struct Corners {
   VD x[4], y[4], depth[4], scalar[4], weight[4];
-  VD nearest, farthest;  ///< depth
+  VD nearest, farthest;  ///< depths
 
   HWY_INLINE Corners(const LatticeVertex* vertices, const scene::Tet* const* tets, const MaskedRect& pixels) {
     const DD d;
@@ -255,7 +256,7 @@ struct Corners {
   [[nodiscard]] HWY_INLINE VD most_weight() const { return Max(Max(weight[0], weight[1]), Max(weight[2], weight[3])); }
 };
 
-/// Stores the edge functions and what is true of the cells. `span`: the boxes' width and height together.
+/// Stores the edge functions and flags of the cells. `span`: width plus height of the boxes.
 template <bool thin>
 HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span, int from, CellBatch& batch) {
   const DD d;
@@ -273,7 +274,8 @@ HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span
     if constexpr (thin) add_bit(sides.edge_on[f], CellBatch::edge_on_bit + f);
   }
 
-  // Over a bound of the six rounding errors, from the largest start and the box; 2^-23 would do, the rest is margin.
+  // Divided by a bound of the six rounding errors, from the largest start and the box; 2^-23 would suffice, the rest is
+  // margin.
   VD start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
@@ -300,9 +302,9 @@ HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span
   StoreU(TruncateTo(du32, bits), du32, batch.bits + from);
 }
 
-/// Stores the candidate pixels of `rect`, which is counted from the square's corner: centres inside the bounding box,
-/// widened by far more than rounding. Returns the boxes' width and height together; cells too far off to be set up
-/// become irregular.
+/// Stores the candidate pixels within `rect`, which is relative to the square's corner: those with centres inside the
+/// bounding box, widened by far more than rounding. Returns width plus height of the boxes; cells too far away for
+/// set-up become irregular.
 HWY_INLINE VD set_up_box(const Corners& corners, const scene::PixelRect& rect, int from, MD& irregular,
                          CellBatch& batch) {
   const hn::Rebind<std::int32_t, DD> di32;
@@ -325,9 +327,9 @@ HWY_INLINE VD set_up_box(const Corners& corners, const scene::PixelRect& rect, i
   return x_high - x_low + (y_high - y_low);
 }
 
-/// Stores the faces' planes: depth and, of point data, scalar. Under perspective a quantity q is not linear in the
-/// image, but the weight u (w of the face's nearest corner over w) and u (q - q_c) are: their planes' quotient is q -
-/// q_c.
+/// Stores the faces' planes: depth and, for point data, scalar. Under perspective, a quantity q is not linear in the
+/// image, but the weight u (w of the face's nearest corner, divided by w) and u (q - q_c) are: the quotient of their
+/// planes is q - q_c.
 template <bool perspective>
 HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&faces)[4], bool per_cell, int from,
                               CellBatch& batch) {
@@ -367,7 +369,7 @@ HWY_INLINE void store_scalar_range(const Corners& corners, int from, CellBatch& 
   StoreU(DemoteTo(df, Max(Max(s[0], s[1]), Max(s[2], s[3]))), df, batch.scalar_high + from);
 }
 
-/// One vector of cells: the first of them is cell `from` of the batch. `rect`: as set_up_box() takes it.
+/// One vector of cells: the first is cell `from` of the batch. `rect` as in set_up_box().
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const Corners& corners,
                              const scene::PixelRect& rect, int from, CellBatch& batch) {
@@ -427,8 +429,8 @@ HWY_INLINE void store_cell_scalars(const scene::Lattice& lattice, const double* 
   StoreU(DemoteTo(df, Round(scalar)), df, batch.cell_scalar + from);
 }
 
-/// Lists name cells all over the mesh: fetch the next batches' corner indices, and their vertices, while this batch is
-/// worked on. `ahead` begins with the next batch.
+/// Lists refer to cells all over the mesh: prefetches the corner indices of the batches that follow, and the vertices
+/// of the next one, while this batch is processed. `ahead` begins with the next batch.
 HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntry> ahead) {
   const std::span<const scene::Tet> tets = view.projected.mesh->tets();
   const scene::TetMeshView& mesh = view.projected.mesh->mesh();

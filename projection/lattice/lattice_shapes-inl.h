@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts that a cell's edges and faces play in its image, and the exact sign of an edge function. Included once per
+// The roles of a cell's edges and faces in its image, and the exact sign of an edge function. Included once per
 // instruction set (Highway's include guard idiom).
 //
-// What   Seen from the eye a cell has two front and two back faces, or one face on one side and three on the other:
+// What   Seen from the eye, a cell has two front and two back faces, or one face on one side and three on the other:
 //
 //          two and two        one and three
 //               .                   .
@@ -38,14 +38,14 @@ namespace HWY_NAMESPACE {
 
 constexpr int lanes = static_cast<int>(MaxLanes(DF()));
 
-/// Which edges and faces play which part, by the set of front faces (bit f of the index).
+/// The roles of edges and faces, by the set of front faces (bit f of the index).
 struct Roles {
   std::uint8_t valid;          ///< some pixel can be hit
   std::uint8_t three;          ///< one face against three
-  std::uint8_t single_behind;  ///< the one is the back face
+  std::uint8_t single_behind;  ///< the single face is the back face
   std::uint8_t outline[4];     ///< edges between front and back (three: the fourth repeats the third)
-  std::uint8_t inner[3];       ///< two and two: the front faces', the back faces' edge. Three: 01, 02, 12 of the three
-  std::uint8_t face[4];        ///< two and two: front 0, 1, back 0, 1; three: the one, then 0, 1, 2
+  std::uint8_t inner[3];       ///< two and two: edge of the front, of the back faces. Three: 01, 02, 12 of the three
+  std::uint8_t face[4];        ///< two and two: front 0, 1, back 0, 1; three: the single face, then 0, 1, 2
 };
 
 constexpr Roles roles_of(unsigned front) {
@@ -93,9 +93,9 @@ constexpr RoleTable make_role_table() {
 }
 constexpr RoleTable role_table = make_role_table();
 
-/// Replaces edge functions of the batch's cell t at a pixel that are not certain by +-2, with the sign of exact
-/// arithmetic and the tie rule. Returns whether the ray meets an edge of the outline between two faces that it passes:
-/// it is in the cell for no distance at all, which rounded planes would not show.
+/// Replaces the uncertain edge functions of the batch's cell t at a pixel by +-2, with the sign of exact arithmetic and
+/// the tie rule. Returns whether the ray meets an edge of the outline between two faces that it passes: its distance
+/// inside the cell is then zero, which rounded planes might not show.
 inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t, const glm::dvec2& pixel,
                          float (&edges)[6], RasterCounts& counts) {
   const scene::Tet& corners = view.projected.mesh->tets()[batch.tet[t]];

@@ -16,7 +16,7 @@ using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 #if HWY_TARGET == HWY_SCALAR
 std::size_t project_points(const LinearMap&, const double*, std::size_t, PixelVertex*) { return 0; }
 #else
-/// A dot product as glm takes it: no fused sums, left to right.
+/// A dot product with the same rounding as in glm: no fused sums, left to right.
 HWY_INLINE VD along(const double (&axis)[3], VD x, VD y, VD z) {
   const DD d;
   return Set(d, axis[0]) * x + Set(d, axis[1]) * y + Set(d, axis[2]) * z;

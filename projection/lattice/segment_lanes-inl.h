@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Segments of the lattice, a segment a lane. Included once per instruction set (Highway's include guard idiom).
+// Segments on the lattice, one per lane. Included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_PROJECTION_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_SEGMENT_LANES_INL_H_
@@ -17,13 +17,13 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
-/// LatticeSegment, a segment a lane.
+/// LatticeSegments, one per lane.
 struct SegmentLanes {
   VI front, back;
   VF scalar_front, scalar_back;
 };
 
-/// Appends the segments of the lanes of `hit`. Packed in registers and stored as whole vectors.
+/// Appends the segments of the lanes of `hit`: packed in registers and stored as whole vectors.
 HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentStream& out) {
   const DI d;
   const DF df;
@@ -36,7 +36,7 @@ HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentSt
   out.size += pack.count();
 }
 
-/// The same of what SegmentStream::hit keeps, before append() of the lanes' segments.
+/// Appends to SegmentStream::hit in the same way; to be called before append() of the lanes' segments.
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
   const DI d;
   const LanePacker pack(RebindMask(d, hit));

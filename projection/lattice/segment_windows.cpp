@@ -18,8 +18,8 @@ std::size_t scatter(const SegmentStream& s, std::size_t, std::size_t, std::size_
   return s.size;
 }
 #else
-/// Segments are made records a vector at a time (a transposition in registers), then stored one by one: one 16-byte
-/// load and store each, in a loop that has no branch to mispredict but its end.
+/// Segments are converted to records one vector at a time (a transposition in registers), then stored one by one: one
+/// 16-byte load and store each, in a loop without branches that can be mispredicted, except at its end.
 std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
                     LatticeSegment* lists, std::uint32_t* counts) {
   const hn::ScalableTag<std::int32_t> d;
@@ -32,8 +32,8 @@ std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capaci
                       BitCast(d, LoadU(df, s.scalar_front.data() + i)), BitCast(d, LoadU(df, s.scalar_back.data() + i)),
                       d, reinterpret_cast<std::int32_t*>(records));
     const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
-    // The lines that segments 48 ahead go to, or thereabouts, as their lists may grow until then. Every second one's:
-    // neighbours in the stream mostly go to one line.
+    // Prefetches the approximate destinations of segments 3 vectors ahead (48 with AVX-512); their lists may grow until
+    // then. Only for every second one: neighbours in the stream mostly have the same cache line.
     const std::size_t ahead = i + 4 * lanes < s.size ? i + 4 * lanes : s.size;
     for (std::size_t n = i + 3 * lanes; n < ahead; n += 2) {
       const auto pixel = static_cast<std::size_t>(s.pixel[n]);
@@ -80,7 +80,7 @@ void SegmentWindows::fit() {
   const std::size_t before = segments_.size();
   if (before >= elements) return;
   segments_.grow(elements);
-  // Lanes read lists' unused elements, which have to be numbers.
+  // Lanes read unused elements of lists, which must be initialized.
   std::fill(segments_.data() + before, segments_.data() + elements, LatticeSegment{});
 }
 

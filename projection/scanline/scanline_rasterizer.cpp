@@ -17,7 +17,7 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The paper's four SSE lanes, on wider machines too; fewer only on those that have no four.
+// The paper's four SSE lanes, also on wider machines; fewer only on machines without four.
 using DF4 = hn::CappedTag<float, 4>;
 using DI4 = hn::CappedTag<std::int32_t, 4>;
 using VF4 = hn::Vec<DF4>;
@@ -26,16 +26,17 @@ constexpr std::size_t most_lanes = MaxLanes(DF4());
 
 HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(DF4())); }
 
-constexpr std::int32_t taken = 0;  ///< owner of a fragment that is paired already, or was never written
+constexpr std::int32_t taken = 0;  ///< owner of a fragment that has been paired, or was never written
 
-/// A projected vertex: pixels, eye depth, scalar; and the first row of the cell's box whose centre is not above it.
+/// A projected vertex: pixel position, eye depth, scalar; and the first row of the cell's box with a centre not above
+/// it.
 struct Vertex {
   float x, y, z, s;
-  int row;  ///< counted from the rectangle's top
+  int row;  ///< counted from the top of the rectangle
 };
 
-/// The arrays of ScanlineBuffers and RaySegments by plain pointers, for one rectangle of pixels. A SIMD store may alias
-/// anything, so through the vectors every store would cost the next one a reload of its pointer.
+/// Plain pointers to the arrays of ScanlineBuffers and RaySegments, for one rectangle of pixels. A SIMD store may alias
+/// anything, so with vectors every store would make the next one reload its pointer.
 struct EdgeArrays {
   float *x, *z, *s;
 };
@@ -48,19 +49,19 @@ struct Arrays {
   std::int32_t* b_owner;
   std::uint64_t* pixel_and_tet;
   double *front, *back, *scalar_front, *scalar_back;
-  std::size_t size;  ///< segments so far
+  std::size_t size;  ///< number of segments so far
   std::uint64_t unpaired;
 };
 
-/// What the fragments of one cell need.
+/// The properties of a cell that its fragments use.
 struct Cell {
-  scene::PixelRect box;  ///< pixels it may cover, inside the rectangle
+  scene::PixelRect box;  ///< the pixels it may cover, inside the rectangle
   float nearest;         ///< depth of its nearest vertex
   float near_clip, far_clip;
-  bool clipped;  ///< reaches beyond one of them
+  bool clipped;  ///< reaches beyond one of these
   float longest_edge;
   std::uint32_t tet;
-  std::int32_t owner;  ///< its mark in B
+  std::int32_t owner;  ///< the cell's mark in B
 };
 
 /// The first row (or pixel) of [low, high] whose centre is not before `position`.
@@ -70,7 +71,7 @@ HWY_INLINE int first_centre(float position, int low, int high) {
 
 /// Intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at a time; row
 /// 0 is the image's row y0. The arrays have four elements more than the rectangle has rows: the last step may write
-/// past the edge's end, where either the next edge overwrites or nothing is read.
+/// past the edge's end, where the next edge overwrites it or nothing is read.
 HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int y0, const EdgeArrays& side) {
   if (start.row >= end.row) return;
   const DF4 f;
@@ -81,7 +82,7 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int y0, const 
   const VF4 y_start = Set(f, start.y), stride = Set(f, static_cast<float>(lane_count()));
   VF4 y = Iota(f, static_cast<float>(y0 + start.row) + 0.5f);  // exact: below 2^20
   for (int row = start.row; row < end.row; row += lane_count(), y = y + stride) {
-    const VF4 step = y - y_start;  // of the first: the sub-pixel pre-step
+    const VF4 step = y - y_start;  // for the first row, the sub-pixel pre-step
     const VF4 factor = step * inverse_dy;
     StoreU(MulAdd(step, inverse_slope, x_start), f, side.x + row);
     StoreU(MulAdd(factor, dz, z_start), f, side.z + row);
@@ -89,7 +90,7 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int y0, const 
   }
 }
 
-/// Integer ends and inverse width of the face's rows, four rows at a time, before the rows are filled.
+/// Computes the integer ends and inverse widths of the face's rows, four rows at a time, before the rows are filled.
 HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, const Arrays& to) {
   const DF4 f;
   const DI4 i;
@@ -104,30 +105,30 @@ HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, con
   }
 }
 
-/// Up to four segments on their way from lanes to RaySegments.
+/// Up to four segments, between lanes and RaySegments.
 struct Lanes {
   alignas(16) float z_back[4], length[4], s_front[4], s_back[4];
 };
 
-/// Appends the first `count` lanes. Writes all: the arrays have padding.
+/// Appends the first `count` lanes. Writes all lanes: the arrays have padding.
 HWY_INLINE void store_segments(const Lanes& lanes, std::uint64_t pixel_and_tet, std::size_t count, double longest_edge,
                                Arrays& to) {
   const std::size_t at = to.size;
   for (std::size_t k = 0; k < most_lanes; ++k) to.pixel_and_tet[at + k] = pixel_and_tet + k;
   for (std::size_t k = 0; k < most_lanes; ++k) to.back[at + k] = lanes.z_back[k];
-  // depths_of(): the product is exact (24 bits times 24), so a fused instruction makes no difference.
+  // As in depths_of(): the product is exact (24 bits times 24), so a fused instruction makes no difference.
   for (std::size_t k = 0; k < most_lanes; ++k) to.front[at + k] = lanes.z_back[k] - lanes.length[k] * longest_edge;
   for (std::size_t k = 0; k < most_lanes; ++k) to.scalar_front[at + k] = lanes.s_front[k];
   for (std::size_t k = 0; k < most_lanes; ++k) to.scalar_back[at + k] = lanes.s_back[k];
   to.size += count;
 }
 
-/// Where lanes' rays leave and enter a cell.
+/// Where the lanes' rays leave and enter a cell.
 struct Crossings {
   VF4 z_back, z_front, s_front, s_back;
 };
 
-/// The lanes one by one: where some have no partner in B, or the clipping range cuts.
+/// Stores lanes one by one: for when some have no partner in B, or the clipping range cuts.
 HWY_NOINLINE void store_some(const Crossings& crossings, MF4 paired, std::uint64_t pixel_and_tet, const Cell& cell,
                              Arrays& to) {
   const DF4 f;
@@ -206,16 +207,16 @@ struct Triangle {
   double area;
 };
 
-/// Scan-converts one face, whose area is not zero.
+/// Scan-converts one face, whose area must not be zero.
 HWY_INLINE void rasterize_face(const Triangle& face, Side side, const Cell& cell, Arrays& to) {
   const Vertex *min = &face.a, *mid = &face.b, *max = &face.c;
-  bool turned = false;  // an odd permutation turns the area's sign
+  bool turned = false;  // an odd permutation reverses the area's sign
   const auto sort = [&](const Vertex*& p, const Vertex*& q) {
     if (q->y < p->y) std::swap(p, q), turned = !turned;
   };
   sort(min, mid), sort(mid, max), sort(min, mid);
   if (min->row >= max->row) return;
-  // y points down, so of a positive area (min, mid, max) the long edge is the left one.
+  // y points down, so if the area of (min, mid, max) is positive, the long edge is the left one.
   const bool long_left = (face.area > 0) != turned;
   const EdgeArrays &long_side = long_left ? to.left : to.right, &short_side = long_left ? to.right : to.left;
   walk_edge(*min, *mid, to.y0, short_side);
@@ -228,7 +229,7 @@ HWY_INLINE void rasterize_face(const Triangle& face, Side side, const Cell& cell
     fill_rows<Side::front>(min->row, max->row, cell, to);
 }
 
-// Faces by their corners; `outward` as in planes: seen from outside, (a, b, c) turns the way that (0, 1, 2) does.
+// Faces by their corners. `outward` as in `planes`: seen from outside, (a, b, c) has the orientation of (0, 1, 2).
 struct Face {
   int a, b, c;
   bool outward;
@@ -236,7 +237,8 @@ struct Face {
 constexpr Face faces[4] = {{0, 1, 2, true}, {0, 1, 3, false}, {0, 2, 3, true}, {1, 2, 3, false}};
 
 void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell, Arrays& to) {
-  // Six times the signed volume: which way the cell's faces turn. In double, as a thin cell's would be noise in float.
+  // Six times the signed volume, which determines the orientation of the cell's faces. In double precision, because a
+  // thin cell's would be noise in float.
   const auto across = [&](int i) { return corners[i].x - corners[0].x; };
   const auto down = [&](int i) { return corners[i].y - corners[0].y; };
   const auto deep = [&](int i) { return corners[i].depth - corners[0].depth; };
@@ -248,10 +250,10 @@ void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)
   bool front[4];
   for (int k = 0; k < 4; ++k) {
     const Vertex &a = v[faces[k].a], &b = v[faces[k].b], &c = v[faces[k].c];
-    // Of the rounded vertices, that is of the triangle that is drawn.
+    // From the rounded vertices, that is, for the triangle that is drawn.
     area[k] = (static_cast<double>(b.x) - a.x) * (static_cast<double>(c.y) - a.y) -
               (static_cast<double>(b.y) - a.y) * (static_cast<double>(c.x) - a.x);
-    // In front of the cell if going deeper from the face leads to its fourth corner.
+    // A front face if increasing depth leads from the face to the cell's fourth corner.
     front[k] = ((area[k] > 0) == (volume > 0)) == faces[k].outward;
   }
   for (const Side side : {Side::back, Side::front})
@@ -292,7 +294,7 @@ std::size_t rasterize(const ScanlineView& view, std::span<const TileEntry> entri
     const std::array<PixelVertex, 4> corners{projected.vertices[t[0]], projected.vertices[t[1]],
                                              projected.vertices[t[2]], projected.vertices[t[3]]};
     Cell cell;
-    // The box of the exact vertices: with it the pixels of a cell do not depend on which tiles it was listed for.
+    // The box of the exact vertices, so that the pixels of a cell do not depend on the tiles for which it was listed.
     cell.box = footprint(corners, rect);
     if (cell.box.empty()) continue;
     Vertex v[4];
@@ -345,7 +347,7 @@ std::size_t rasterize_scanline(const ScanlineView& view, std::span<const TileEnt
                                RasterCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(rect.area()) + padding,
                     rows = static_cast<std::size_t>(rect.height()) + padding;
-  // Grown, never shrunk: a new element's owner is 0, `taken`, and a kept one's is stale.
+  // The buffers only grow: the owner of a new element is 0, `taken`, and those of the others are stale.
   if (buffers.z.size() < pixels) {
     buffers.z.resize(pixels);
     buffers.s.resize(pixels);

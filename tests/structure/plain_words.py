@@ -19,7 +19,7 @@ from bisect import bisect_right
 from pathlib import Path
 
 DIRECTORIES = """include api frame scene apps server analysis annotation io cells readers system colormaps datasets
-                 reference gl tests bench sorting exchange compositor""".split()
+                 reference gl tests bench sorting exchange compositor projection""".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
 
 # (pattern, what to write, an example that it refuses). Case does not matter.
