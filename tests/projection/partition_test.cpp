@@ -115,7 +115,7 @@ TEST(Curve, PartsAreBalancedWhoeverHoldsTheTets) {
     for (const int parts : {1, 2, 3, 8, 61}) expect_balanced(keys, parts, 15);
   }
   const scene::TetMesh large = datasets::cube(30);
-  expect_balanced(curve_keys(large, {}, scene::bounds(large)), 4, 2);  // the usual case takes no more
+  expect_balanced(curve_keys(large, {}, scene::bounds(large)), 4, 2);  // as many rounds as usual
 }
 
 TEST(Curve, TetsAtOnePlaceAreCutByTheirIndex) {

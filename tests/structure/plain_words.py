@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that comments of C++ sources avoid phrases that readers have to decode: verbs of speaking for data, pronouns
-for things, clipped clauses, idioms that are not standard English.
+"""Checks that comments of C++ sources, comments and docstrings of scripts, and Markdown files avoid phrases that readers
+have to decode: verbs of speaking for data, pronouns for things, clipped clauses, idioms that are not standard English.
 
-PHRASES is the table, EXCEPTIONS lists legitimate uses. Only DIRECTORIES, which have been edited already, are checked.
-Text in backquotes or double quotes is code or a quotation, and is ignored. String literals of several words, in all
-directories but tests/ and bench/, are checked for the phrases of IN_MESSAGES.
+PHRASES is the table, EXCEPTIONS lists legitimate uses. Of C++ sources only DIRECTORIES, which have been edited already,
+are checked. Text in backquotes or double quotes is code or a quotation, and is ignored, as are the options and
+placeholders (in capitals) of scripts. String literals of several words, in all directories but tests/ and bench/, are
+checked for the phrases of IN_MESSAGES.
 
 Reports each phrase as file:line with its replacement; exit status 1 if there is one. First checks itself: every row of
 the table must refuse its own example, and no row may refuse PLAIN.
@@ -13,14 +14,17 @@ the table must refuse its own example, and no row may refuse PLAIN.
     plain_words.py SOURCE_TREE
 """
 
+import io
 import re
 import sys
-from bisect import bisect_right
+import tokenize
 from pathlib import Path
 
 DIRECTORIES = """include api frame scene apps server analysis annotation io cells readers system colormaps datasets
                  reference gl tests bench sorting exchange compositor projection""".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
+SCRIPTS = ["scripts/**/*.py", "tests/**/*.py", "bench/**/*.py"]
+MARKDOWN = ["README.md", "CHANGELOG.md", "docs/*.md", "*/README.md", "*/*/README.md"]
 
 # (pattern, what to write, an example that it refuses). Case does not matter.
 PHRASES = [
@@ -37,7 +41,7 @@ PHRASES = [
     (r"\bany more\b|\bno more(?=[.;:)]|$)", "no longer, nothing else", "what is not shown any more"),
     (r"\bso many\b(?! (that|as)\b)", "the number's name", "a grid of so many points"),
     (r"\bsuch( a)? ones?\b|\bsuch(?=[.,;:)])", "like this, of this kind", "only by such a one"),
-    (r"(?<!there )\b(is|are|was|were) no\b(?! (longer|more|further|larger|smaller|less|fewer|nearer|earlier|later)\b)",
+    (r"(?<!there )\b(is|are|was|were) no\b(?! (longer|more|further|larger|smaller|less|fewer|nearer|earlier|later|better|brighter)\b)",
      "is not a, does not support", "what is no array of a file"),
     (r"(?<!there )\b(is|are) none\b", "is not one, is invalid, is empty", "a type that is none"),
     (r"\bknows? no\b", "does not support", "the rasterizer knows no surfaces"),
@@ -54,6 +58,9 @@ PHRASES = [
 PLAIN = """None of which holds for `who tells`: there is no more memory than the users who asked for it need. A value,
 say, the list, is no longer such as the file "says"; there are none that stand for so many that it stands for another."""
 
+# Words for users, which messages use, too.
+NOT_IN_MARKDOWN = {"image, frame", "directory"}
+
 # What to write instead of phrases that messages and help texts avoid too.
 IN_MESSAGES = """receive, be called with|no caller, the caller|again, newly|again|fix, correct|does not support|
 next to, in addition to, in parallel with|is not a, does not support|is not one, is invalid, is empty""".replace(
@@ -63,7 +70,9 @@ next to, in addition to, in parallel with|is not a, does not support|is not one,
 # (pattern, reason) of legitimate uses, removed from the text before the table is applied. Each must occur.
 EXCEPTIONS = [
     (r"\bthe last of which\b", "a part of what precedes it, like none of which"),
-    (r"\bis no brighter than\b", "a comparison"),
+    (r"\b(scientists|developers|anyone|everyone) who\b", "people"),
+    (r"\b(about|and) so many (at most|pieces)\b|\bof the picture so many times\b", "help texts of options with N"),
+    (r"\b(eye|opaque) beside\b", "names of scenes in docs/RESULTS.md, from bench/stability/scenes.py"),
 ]
 
 TOKEN = re.compile(
@@ -75,28 +84,50 @@ TOKEN = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 QUOTED = re.compile(r"`[^`]*`|\"[^\"]*\"|NOLINT\w*(\([^)]*\))?")
+LINKS = re.compile(r"\]\([^)]*\)|<[^>\n]*>|https?://\S+")
+USAGE = re.compile(r"--[\w-]+( \w+(\|\w+)+)?|\b[A-Z][A-Z_]+\b")
 
 
 def blanked(match):
-    return " " * len(match[0])
+    return re.sub(r"[^\n]", " ", match[0])
 
 
-def comments(source):
-    """(line, text) of each comment; consecutive lines of comments are one, as sentences continue there."""
-    block, lines, last = "", [], 0
+def joined(comments):
+    """(first line, text) of comments; those on consecutive lines are one, as sentences continue there."""
+    first, last, text = 0, 0, ""
+    for line, comment in comments:
+        if text and line > last + 1:
+            yield first, text
+            text = ""
+        first = first if text else line
+        text += ("\n" if text and line > last else " ") + comment
+        last = line + comment.count("\n")
+    if text:
+        yield first, text
+
+
+def cpp_comments(source):
     for token in TOKEN.finditer(source):
-        if not token["comment"]:
-            continue
-        first = source.count("\n", 0, token.start()) + 1
-        if block and first > last + 1:
-            yield block, lines
-            block, lines = "", []
-        for number, line in enumerate(token["comment"].split("\n"), first):
-            lines.append((len(block), number))
-            block += re.sub(r"^\s*(//+<?|/?\*+)\s?|\*/$", "", line) + " "
-            last = number
-    if block:
-        yield block, lines
+        if token["comment"]:
+            text = re.sub(r"(?m)^[ \t]*(//+<?|/?\*+)[ \t]?|\*/$", "", token["comment"])
+            yield source.count("\n", 0, token.start()) + 1, text
+
+
+def python_comments(source):
+    """Comments, and strings that are statements."""
+    before = tokenize.NEWLINE
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.STRING and before in (tokenize.NEWLINE, tokenize.INDENT):
+            yield token.start[0], USAGE.sub(blanked, token.string.strip("r\"'"))
+        elif token.type == tokenize.COMMENT:
+            yield token.start[0], token.string.lstrip("#! ")
+        if token.type not in (tokenize.COMMENT, tokenize.NL):
+            before = token.type
+
+
+def paragraphs(source):
+    for match in re.finditer(r"\S[^\n]*(\n[^\n]*\S[^\n]*)*", LINKS.sub(blanked, source)):
+        yield source.count("\n", 0, match.start()) + 1, match[0]
 
 
 def messages(source):
@@ -132,11 +163,10 @@ def faults_in_itself():
         yield f"plain_words.py: refuses plain English: {phrase}"
 
 
-def faults_in(file, used):
-    for block, lines in comments(file.read_text(encoding="utf-8")):
-        for offset, phrase, instead in refused(block, used):
-            number = lines[bisect_right(lines, (offset, sys.maxsize)) - 1][1]
-            yield number, f"{phrase} -> {instead}"
+def faults_in(texts, used):
+    for first, text in texts:
+        for offset, phrase, instead in refused(text.replace("\n", " "), used):
+            yield first + text.count("\n", 0, offset), phrase, instead
 
 
 def faults_in_messages(file):
@@ -150,8 +180,16 @@ def main():
     tree = Path(sys.argv[1])
     faults, used = list(faults_in_itself()), set()
     files = [f for d in DIRECTORIES for f in sorted((tree / d).rglob("*")) if f.suffix in SUFFIXES and f.is_file()]
+    files += [f for pattern in SCRIPTS + MARKDOWN for f in sorted(tree.glob(pattern)) if "build" not in f.parts]
     for file in files:
-        faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in(file, used)]
+        source = file.read_text(encoding="utf-8")
+        if file.suffix == ".md":
+            texts = paragraphs(source)
+        else:
+            texts = joined(python_comments(source) if file.suffix == ".py" else cpp_comments(source))
+        for number, phrase, instead in faults_in(texts, used):
+            if file.suffix != ".md" or instead not in NOT_IN_MARKDOWN:
+                faults.append(f"{file.relative_to(tree)}:{number}: {phrase} -> {instead}")
     sources = [f for f in sorted(tree.glob("*/**/*")) if f.suffix in SUFFIXES and f.is_file()]
     skipped = {"tests", "bench", "build", "examples"}
     for file in [f for f in sources if f.relative_to(tree).parts[0] not in skipped]:
