@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The exact integral of one ray segment a float lane, to be inlined in a loop over segments; included once per
-// instruction set (Highway's include guard idiom).
+// The exact integral over ray segments in float lanes, one segment per lane, to be inlined in a loop over segments.
+// Included once per instruction set (Highway's include guard idiom).
 //
 // What      int kappa c T dt (or int c T dt, independent emission) and int kappa dt over a segment whose scalar is
-// linear,
-//           for a transfer function that is piecewise linear (LaneTable). A lane is cut where its scalar crosses a
-//           knot, and pieces of more than one optical depth are cut again. A ray at a knot going up, or staying there,
-//           is in the interval above, going down in the interval below.
-// How       Over a piece kappa goes linearly from kappa_0 to kappa_1 and colour is c = start + slope * x, x linear too.
-//           With a = kappa_0 l, e = kappa_1 l, the piece's optical depth is h = (a + e) / 2, and with b = (e - a) / 2
-//           the depth up to u in [0, 1] is q(u) = h u - b u (1 - u). By parts, as in segment_integrator.hpp,
+//           linear, for a transfer function that is piecewise linear (LaneTable). A segment is cut where its scalar
+//           crosses a knot, and pieces of more than one optical depth are cut again. A scalar equal to a knot belongs
+//           to the interval above if the scalar increases or is constant along the ray, and to the interval below if it
+//           decreases.
+// How       Over a piece kappa changes linearly from kappa_0 to kappa_1, and colour is c = start + slope * x, with x
+//           linear too. With a = kappa_0 l, e = kappa_1 l, the piece's optical depth is h = (a + e) / 2. The depth up
+//           to u in [0, 1] is q(u) = h u - b u (1 - u) with b = (e - a) / 2. Integration by parts, as in
+//           segment_integrator.hpp, gives
 //             int kappa c T dt = start A + slope (x_0 A + (x_1 - x_0) P),  A = 1 - exp(-h),  P = M - exp(-h),
 //             M = int_0^1 exp(-q) du = exp(-h/2) (1 + g),  1 + g = int_0^1 exp(b u (1 - u)) cosh(h (u - 1/2)) du.
-//           All three colours share A and the bracket. g is even in h, so a short polynomial in b and h^2 gives it, and
-//           with e_1 = 1 - exp(-h/2), also a polynomial, A = e_1 (2 - e_1) and P = exp(-h/2) (g + e_1) lose nothing
-//           where h is 1e-9. No exponential is evaluated at all.
-// Accuracy  tests/integrals/lane_integrator_test.cpp states and holds it.
-// Bits      A lane's result depends on that lane alone: what only some lanes need is blended in by lane. Products and
-//           sums are fused where MulAdd is written and nowhere else, so that every copy of this code rounds alike:
-//           sources that include it are compiled with -ffp-contract=off.
-// Ends      Where the optical depth passes 20, what is behind is left out (2e-9 of the light); optical_depth then
-//           counts the pieces so far and is at least 20.
+//           All three colours share A and the bracket. g is even in h, so a short polynomial in b and h^2 approximates
+//           it. With e_1 = 1 - exp(-h/2), also a polynomial, A = e_1 (2 - e_1) and P = exp(-h/2) (g + e_1) lose no
+//           precision even where h is 1e-9. No exponential function is evaluated.
+// Accuracy  tests/integrals/lane_integrator_test.cpp states and checks it.
+// Bits      A lane's result depends on that lane alone: code that only some lanes need is blended in by lane. Products
+//           and sums are fused only where MulAdd is written, so that every copy of this code rounds alike; sources that
+//           include it are compiled with -ffp-contract=off.
+// Ends      Where the optical depth exceeds 20, the rest of the segment is omitted (2e-9 of the light); optical_depth
+//           is then the sum of the pieces so far, at least 20.
 
 #if defined(TESSERA_INTEGRALS_INTEGRATE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_INTEGRATE_LANES_INL_H_
@@ -37,7 +38,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 
-/// Light that leaves a segment's front, linear RGB, what the segment hides of that behind it, and int kappa dt.
+/// Light that leaves the front of a segment, linear RGB; its opacity; and its optical depth int kappa dt.
 struct Light {
   VF alpha, optical_depth, red, green, blue;
 };
@@ -45,9 +46,9 @@ struct Light {
 namespace lanes {
 
 constexpr float opaque_depth = 20.0f;  // exp(-20) = 2e-9
-constexpr float most_depth = 1e15f;    // of a piece that is cut: squares of it stay finite
-constexpr float most_length = 1e18f;   // times a table's largest number stays finite
-constexpr float step_depth = 1.0f;     // the polynomials' bound
+constexpr float most_depth = 1e15f;    // bound of the optical depth of a piece that is cut: its squares remain finite
+constexpr float most_length = 1e18f;   // bound of lengths: finite if multiplied by the largest number in a table
+constexpr float step_depth = 1.0f;     // the range of the polynomials
 constexpr int pieces_a_fold = 16;
 
 /// c[0] + c[1] x + ...
@@ -61,18 +62,20 @@ HWY_INLINE VF polynomial(VF x, const float (&c)[count]) {
 
 /// A stretch without knots, of at most about one optical depth.
 struct Stretch {
-  VF depth_front, depth_back;  ///< half the extinction there times the stretch's length: a / 2 and e / 2 above
+  VF depth_front, depth_back;  ///< half the extinction at each end times the stretch's length: a / 2 and e / 2 above
   VF from, span;               ///< scalar at its front relative to the interval's base, and the change to its back
   VF length;
 };
 
-/// What a stretch adds: light = start * weight + slope * moment.
+/// The light of a stretch: start * weight + slope * moment.
 struct StretchLight {
   VF alpha, weight, moment;
 };
 
-// Minimax fits over 0 <= h <= 1, |b| <= h: e_1 = h e(h) to 1.4e-9 of itself; g = b g_b(b) + h^2 g_bh2(b) + h^4 g_bh4(b)
-// to 1.9e-7 h, 3e-8 h where h is small; o = o_b(b) + h^2 o_bh2(b) + h^4 o_h4 to 1.9e-7 / h.
+// Minimax fits over 0 <= h <= 1, |b| <= h, and their errors:
+//   e_1 = h e(h)                                  1.4e-9 e_1
+//   g = b g_b(b) + h^2 g_bh2(b) + h^4 g_bh4(b)    1.9e-7 h, and 3e-8 h where h is small
+//   o = o_b(b) + h^2 o_bh2(b) + h^4 o_h4          1.9e-7 / h
 constexpr float e_1[] = {0.499999999312f,   -0.124999951852f,   0.0208327801554f,
                          -0.0026018185097f, 0.000255856557986f, -1.7525919055e-5f};
 constexpr float g_b[] = {0.166666680449f, 0.0166684718002f, 0.00119048719931f, 6.6856007248e-5f, 2.70946476007e-6f};
@@ -107,12 +110,13 @@ HWY_INLINE StretchLight stretch_light(const Stretch& s, bool independent) {
   return light;
 }
 
-/// What a lane has gathered so far.
+/// The sums of a lane so far.
 struct Progress {
   VF alpha, transmittance, optical_depth, red, green, blue;
 };
 
-/// A stretch, what was gathered before it, and the sums over its piece, already dimmed by what is in front of them.
+/// The rest of a piece, the opacity and transmittance accumulated in front of it, and the sums over the piece so far,
+/// attenuated by what is in front of them.
 struct Passage {
   Stretch rest;
   VF alpha, transmittance, weight, moment;
@@ -127,8 +131,9 @@ HWY_INLINE void add_stretch(bool independent, Passage& p) {
   p.transmittance = p.transmittance - hidden;
 }
 
-/// Takes steps of one optical depth off the front of thick lanes until no more than one is left, or nothing that shows.
-/// The other lanes stay as they are. By value: a reference would keep the caller's numbers in memory.
+/// Integrates steps of one optical depth from the front of thick lanes, until at most one is left or the rest is
+/// invisible. Other lanes are not changed. Passed by value, because a reference would keep the caller's variables in
+/// memory.
 HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage p) {
   const DF d;
   const VF one = Set(d, 1.0f), zero = Zero(d), bound = Set(d, step_depth), most = Set(d, most_depth);
@@ -136,9 +141,9 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = IfThenElse(thick, rest, x); };
   cut(p.rest.depth_front, Min(p.rest.depth_front, most));
   cut(p.rest.depth_back, Min(p.rest.depth_back, most));
-  constexpr int most_steps = 64;  // each lets exp(-1) through at most, so that 21 leave nothing
+  constexpr int most_steps = 64;  // each step transmits at most exp(-1), so 21 steps leave a negligible rest
   for (int n = 0; n < most_steps && !AllFalse(d, thick); ++n) {
-    // With depths halved q(u) = 2 a u + (e - a) u^2; the root u of q(u) = bound in the form without cancellation.
+    // With halved depths q(u) = 2 a u + (e - a) u^2. u solves q(u) = bound in the form without cancellation.
     Stretch& s = p.rest;
     const VF a = s.depth_front, rise = s.depth_back - a;
     const VF root = Sqrt(Max(zero, MulAdd(a, a, bound * rise)));
@@ -156,7 +161,7 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
     cut(s.from, s.from + step.rest.span);
     cut(s.span, s.span * left);
     cut(s.length, s.length * left);
-    // A lane that nothing shows through is done: an empty stretch adds nothing.
+    // A lane through which nothing is visible is finished: an empty stretch adds nothing.
     const MF dark = And(thick, p.transmittance < transmittance_left);
     for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = IfThenElse(dark, zero, *x);
     thick = And(thick, s.depth_front + s.depth_back > bound);
@@ -164,13 +169,13 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   return p;
 }
 
-/// A piece of a segment, over which the scalar goes linearly from `front` to `back` == front + span.
+/// A piece of a segment, over which the scalar changes linearly from `front` to `back` == front + span.
 struct LinearPiece {
   VF front, back, span, length;
 };
 
-/// The light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. In the
-/// `first` piece nothing is in front of it: the same numbers, without products by one and sums with zero.
+/// Adds the light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. There
+/// is nothing in front of the `first` piece: its numbers are the same, without products with one and sums with zero.
 template <bool first, class Lookup>
 HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, const LinearPiece& piece,
                           Progress& so_far) {
@@ -218,20 +223,20 @@ HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& ind
   add_color(LaneTable::blue, so_far.blue);
 }
 
-/// A segment's way from one knot to the next.
+/// A segment's path from one knot to the next.
 struct Walk {
   MF active, up;
   VI interval;
   VF scalar, back, length_per_scalar;
 
-  /// The knot ahead or the segment's end, whichever comes first.
+  /// The next knot or the segment's end, whichever comes first.
   template <class Lookup>
   HWY_INLINE VF target(const Lookup& table, const typename Lookup::Index& index) const {
     const VF knot = table.edge(interval, index, up);
     return IfThenElse(up, Min(knot, back), Max(knot, back));
   }
 
-  /// The pieces behind the knot at `scalar`, at most `most` of them.
+  /// Integrates at most `most` pieces behind the knot at `scalar`.
   template <class Lookup>
   HWY_INLINE void go_on(const Lookup& table, int most, Progress& so_far) {
     const DF d;
@@ -251,7 +256,8 @@ struct Walk {
   }
 };
 
-/// The rest of a walk of more than pieces_a_fold pieces. Long sums in float drift: these are sums of short ones.
+/// The rest of a walk with more than pieces_a_fold pieces. Long float sums drift, so it adds partial sums of few
+/// pieces.
 template <class Lookup>
 HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
   const DF d;
@@ -270,9 +276,10 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 
 }  // namespace lanes
 
-/// integrate_lanes() for segments that lie in one interval and are at most step_depth thick, which most are: straight
-/// on, the same bits. `interval`: table.locate(front, back >= front). `more`: the lanes with a length whose segment is
-/// not so, and whose light is not the answer. Lanes without a length may hold any finite numbers, and get zeros.
+/// integrate_lanes() in straight-line code, for the most frequent segments: those in one interval that are at most
+/// step_depth thick. It gives the same bits. `interval`: table.locate(front, back >= front). `more`: the lanes of
+/// nonzero length whose segment does not meet these conditions, and whose result is invalid. Lanes of zero length may
+/// hold any finite numbers; their result is zero.
 template <bool independent, TableForm form>
 HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
@@ -296,8 +303,8 @@ HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF len
   return {light.alpha, depth, color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
 }
 
-/// The integral over one segment a lane. `length` in the table's unit, >= 0; `front` and `back` as lane_scalar() gives
-/// scalars. Finite where `active`; lanes that are not active may hold anything and get zeros.
+/// The integral over one segment per lane. `length` in the table's unit, >= 0; `front` and `back` as returned by
+/// lane_scalar(). All finite where `active`; other lanes may hold anything, and their result is zero.
 template <TableForm form>
 HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front, VF back, MF active) {
   const DF d;
@@ -315,7 +322,7 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
   const auto index = table.index(walk.interval, active);
   const VF end = walk.target(table, index), span = end - front;
   walk.active = And(active, end != back);
-  // What a level segment's division gives is not used.
+  // For constant scalars the result of this division is not used.
   walk.length_per_scalar = length / (back - front);
   const VF piece = IfThenElse(walk.active, span * walk.length_per_scalar, length);
   lanes::add_piece<true>(table, index, {front, end, span, piece}, so_far);

@@ -8,16 +8,17 @@
 
 namespace tessera::integrals {
 
-/// Ray segments for the float integrator and the light that comes out, one array a quantity.
+/// A batch of ray segments for the float integrator with the resulting light, one array per quantity.
 ///
-/// Arrays hold `padding` elements more than `size`, so that the last vector of lanes may read and write past it.
+/// Arrays have `padding` more elements than `size`, so that the last vector of lanes may read and write past the end.
 struct FloatBatch {
   static constexpr std::size_t padding = 64;
 
   std::size_t size = 0;
-  // In. Lengths >= 0 in the table's length unit; scalars at entry and exit as lane_scalar() gives them. All finite.
+  // Input. Lengths are >= 0, in the table's length unit; scalars at entry and exit are values of lane_scalar(). All
+  // finite.
   std::vector<float> length, scalar_front, scalar_back;
-  // Out. Light that leaves the segment's front, linear RGB; alpha = 1 - exp(-optical_depth).
+  // Output. Light that leaves the front of the segment, linear RGB; alpha = 1 - exp(-optical_depth).
   std::vector<float> red, green, blue, alpha, optical_depth;
 
   void reserve(std::size_t capacity) {
@@ -26,11 +27,12 @@ struct FloatBatch {
   }
 };
 
-/// `exact` in float lanes (integrate_lanes-inl.h says what and how well) over a batch. A segment's bits depend on that
-/// segment alone, and are those of the same code inlined elsewhere on the same instruction set.
+/// The `exact` integrator in float lanes over a batch; integrate_lanes-inl.h describes the method and its accuracy. The
+/// bits of a segment's result depend on that segment alone, and equal those of the same code inlined elsewhere on the
+/// same instruction set.
 void integrate_lanes(const LaneTable& table, FloatBatch& batch);
 
-/// How the table is held on the instruction set that runs: "one vector", "two vectors" or "many". For reports.
+/// How the running instruction set stores the table: "one vector", "two vectors" or "many". For reports.
 const char* lane_table_form(const LaneTable& table);
 
 }  // namespace tessera::integrals

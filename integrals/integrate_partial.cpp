@@ -67,7 +67,7 @@ void partial(const PiecewiseTable& table, const PsiTable& psi, SegmentBatch& bat
       const V a = Max(channel(0, from), zero) * piece, b = Max(channel(0, to), zero) * piece;
       const V depth = half * (a + b);
       const V absorbed = Neg(Expm1(d, Neg(depth)));
-      // M - T, above 0 and below 1 - T for any monotonous extinction; the table's error must not leave that range.
+      // M - T is between 0 and 1 - T for any monotonic extinction; errors of the table are clamped to that range.
       const V shift = Min(Max(psi_of(psi, a, b) - (one - absorbed), zero), absorbed);
       for (int c = 0; c < 3; ++c) {
         const V near = channel(c + 1, from), change = channel(c + 1, to) - near;

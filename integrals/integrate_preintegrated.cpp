@@ -17,11 +17,11 @@ namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// What a stretch adds behind what is in front of it.
+/// Light and optical depth accumulated from front to back.
 struct Gathered {
   V color[3], optical_depth;
 
-  /// `kappa`: its mean extinction; `source`: its light * kappa / (1 - exp(-kappa length)).
+  /// Adds a piece with mean extinction `kappa` and `source` = light * kappa / (1 - exp(-kappa length)).
   HWY_INLINE void add(V length, V kappa, const V (&source)[3]) {
     const D d;
     const V depth = kappa * length;
@@ -34,11 +34,11 @@ struct Gathered {
   }
 };
 
-/// Where the function is constant: below the first knot or above the last.
+/// Adds a part where the function is constant: below the first knot or above the last.
 HWY_INLINE void add_outside(const SegmentTable& table, bool by_extinction, V scalar, V length, Gathered& sum) {
   const D d;
   if (AllFalse(d, length > Zero(d))) return;
-  const auto is_above = scalar >= Set(d, table.high);  // right-continuous, if it is a step alone
+  const auto is_above = scalar >= Set(d, table.high);  // a function that is a single step is right-continuous
   const auto either = [&](double below, double above)
                           HWY_ATTR { return IfThenElse(is_above, Set(d, above), Set(d, below)); };
   const V kappa = either(table.below.extinction, table.above.extinction);
@@ -49,7 +49,7 @@ HWY_INLINE void add_outside(const SegmentTable& table, bool by_extinction, V sca
   sum.add(length, kappa, source);
 }
 
-/// Between the knots, by the table.
+/// Adds the part between the first and the last knot, from the table.
 HWY_INLINE void add_inside(const SegmentTable& table, V front, V back, V length, Gathered& sum) {
   const D d;
   const V low = Set(d, table.low), scale = Set(d, table.scale);
@@ -91,7 +91,8 @@ void preintegrated(const SegmentTable& table, scene::Emission emission, SegmentB
     const V front = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_front[i]));
     const V back = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_back[i]));
     const V front_inside = Min(Max(front, low), high), back_inside = Min(Max(back, low), high);
-    // The stretch between the knots, as shares of the segment. What is all outside lies in front of it.
+    // [begin, end] is the part between the first and the last knot, as fractions of the segment. A segment entirely
+    // outside counts as outside in front (begin = 1).
     const auto constant = front == back;
     const V change = IfThenElse(constant, one, back - front);
     const auto below = And(front < low, back < low);

@@ -39,7 +39,7 @@ void sampled(const PiecewiseTable& table, scene::Emission emission, int samples,
       };
       const V depth = channel(0) * step;
       const V through = Exp(d, Neg(depth));
-      // int_0^step exp(-kappa t) dt, and kappa times it.
+      // `source` is int_0^step exp(-kappa t) dt, times kappa for emission by absorption.
       const V absorbed = one - through;
       const auto thin = depth < Set(d, 1e-8);
       const V source =

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A LaneTable in reach of float lanes; included once per instruction set (Highway's include guard idiom).
+// Access to a LaneTable from float lanes. Included once per instruction set (Highway's include guard idiom).
 //
-// What      The interval of the transfer function that each lane's scalar is in, and the table's numbers for it.
-// How       A column of few knots is held in one vector, or two, where a permutation looks up all lanes. A longer one
-//           stays in memory: two vectors around the first lane's interval mostly have all of them, else they are
-//           gathered. Intervals are found by a grid of equal cells, or by comparing some knots, and a binary search
-//           from there.
-// Bits      All forms of the table give the same.
+// What      Finds the interval of the transfer function that contains each lane's scalar, and the table's numbers for
+//           it.
+// How       Columns of few knots are kept in one or two vectors, and a permutation looks up all lanes. Longer columns
+//           stay in memory: usually two vectors around the first lane's interval contain all lanes' entries, otherwise
+//           they are gathered. Intervals are found by a uniform grid, or by comparing some knots, followed by a binary
+//           search.
+// Bits      All forms of the table give the same results.
 
 #if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_
@@ -36,7 +37,7 @@ using scene::HWY_NAMESPACE::truncated;
 using scene::HWY_NAMESPACE::VF;
 using scene::HWY_NAMESPACE::VI;
 
-/// Where the table's rows are: each in one vector, each in two, or in memory.
+/// Where the table's rows are stored: each in one vector, each in two, or in memory.
 enum class TableForm { one_vector, two_vectors, many };
 
 HWY_INLINE TableForm form_of(const LaneTable& table) {
@@ -44,15 +45,15 @@ HWY_INLINE TableForm form_of(const LaneTable& table) {
   return edges <= lanes ? TableForm::one_vector : edges <= 2 * lanes ? TableForm::two_vectors : TableForm::many;
 }
 
-/// Numbers of intervals by lane. Every form offers:
-///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
-///   index(i, active) makes intervals ready for look-ups; those of active lanes must be right;
-///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true;
-///   most_pieces     of a segment.
+/// Looks up intervals by lane. Every form provides:
+///   locate(s, up)    the interval that a ray at s enters: the number of knots at or below s where `up`, else below s;
+///   index(i, active) the intervals prepared for lookups; only those of active lanes need to be valid;
+///   at(column, index), and edge(i, index, upper) for an end of the interval: the upper end where `upper` is 1 or true;
+///   most_pieces      upper bound of the pieces of a segment.
 template <TableForm form>
 class Lookup;
 
-/// One more in lanes of the mask.
+/// Adds one to `count` in lanes of the mask.
 HWY_INLINE VI count_if(MF mask, VI count) {
   const DI di;
 #if HWY_TARGET <= HWY_AVX3
@@ -62,16 +63,17 @@ HWY_INLINE VI count_if(MF mask, VI count) {
 #endif
 }
 
-/// The next float above s in lanes of `up`: a knot is below that if it is at s or below, so that one comparison does.
+/// The next float above s in lanes of `up`, else s. A knot is below the next float if it is at or below s, so one
+/// comparison serves both directions.
 HWY_INLINE VF past(VF s, MF up) {
   const DF d;
   const DI di;
-  const VI bits = BitCast(di, s + Zero(d));  // -0 has no neighbour in its bits
+  const VI bits = BitCast(di, s + Zero(d));  // the bit pattern of -0 has no neighbouring float
   const VI away = Or(ShiftRight<31>(bits), Set(di, 1));
   return BitCast(d, IfThenElse(RebindMask(di, up), bits + away, bits));
 }
 
-/// Further knots below s, of those after the first `passed`, by a binary search of the edges: edge_at finds edge[i].
+/// Adds to `passed` the number of further knots below s, by a binary search of the edges: edge_at(i) returns edge[i].
 template <class EdgeAt>
 HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge_at) {
   const DI di;
@@ -82,7 +84,7 @@ HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge
   return passed;
 }
 
-/// Up to eight knots, evenly spread by index, that are compared one and all, which is shorter than a search.
+/// Up to eight knots, evenly spaced by index. Comparing all of them is faster than the first steps of a search.
 struct Landmarks {
   static constexpr std::size_t count = 8;
   explicit HWY_INLINE Landmarks(const LaneTable& table) {
@@ -119,7 +121,7 @@ class Lookup<TableForm::one_vector> {
     const DF d;
     const DI di;
     for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = LoadU(d, table.column(c));
-    // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
+    // A grid of few cells with at most one knot per cell is also kept in registers: half the work of comparing knots.
     const std::size_t lanes = hn::Lanes(di), cells = table.knots_before.size();
     in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
     if (!in_registers_) return;
@@ -157,7 +159,7 @@ class Lookup<TableForm::one_vector> {
   Landmarks landmarks_;
   VF rows_[LaneTable::column_count];
   bool in_registers_;
-  VF low_cells_, high_cells_;  ///< numbers of knots in lower cells, as bits
+  VF low_cells_, high_cells_;  ///< number of knots in lower cells, stored as the bits of floats
   VF grid_origin_, grid_scale_, last_cell_;
 };
 
@@ -194,9 +196,8 @@ class Lookup<TableForm::two_vectors> {
   VF low_[LaneTable::column_count], high_[LaneTable::column_count];
 };
 
-/// Neighbouring lanes are mostly in neighbouring intervals: a window of two vectors around the first active lane's
-/// interval then holds them all, and two loads and a permute take the place of a gather. It is the same number either
-/// way.
+/// Neighbouring lanes are usually in neighbouring intervals. A window of two vectors around the first active lane's
+/// interval then contains them all, and two loads and a permutation replace a gather. Both give the same numbers.
 template <>
 class Lookup<TableForm::many> {
  public:
@@ -231,7 +232,7 @@ class Lookup<TableForm::many> {
     index.interval = interval;
     index.window = static_cast<std::size_t>(window);
     const VI in_window = interval - Set(di, window);
-    // Bits above 2 lanes are set where a lane is out of the window, on either side; one place is kept for the far edge.
+    // A lane may be outside the window on either side. The last element is reserved for the upper edge of an interval.
     const auto outside = RebindMask(d, Or(in_window<Zero(di), in_window> Set(di, 2 * lanes - 2)));
     index.windowed = AllFalse(d, And(active, outside));
     index.in_window = IfThenZeroElse(RebindMask(di, outside), in_window);

@@ -16,7 +16,8 @@ double channel_of(const scene::Knot& knot, int channel) {
   return channel == 0 ? knot.extinction : knot.color[channel - 1];
 }
 
-/// What a ray meets at one position, coming from below and going on above: the two differ at a step.
+/// The function at one position of its knots: `below` when approached from below, `above` from above. They differ at a
+/// step.
 struct Place {
   double position;
   scene::Knot below, above;
@@ -33,7 +34,7 @@ bool emits(const scene::Knot& knot, scene::Emission emission) {
 double lane_at_or_above(double value, double origin, double unit) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const double difference = value - origin, back = difference - value;
-  const double rest = (value - (difference - back)) - (origin + back);  // Knuth's two-sum: what rounding left out
+  const double rest = (value - (difference - back)) - (origin + back);  // rounding error by Knuth's two-sum
   const double exact = difference / unit;
   const auto below = [&](float f) { return f < exact || (f == exact && rest > 0); };
   auto f = static_cast<float>(exact);
@@ -56,7 +57,7 @@ std::vector<Place> places_of(const scene::TransferFunction& function, double ori
   };
   const auto knots = function.knots();
   const auto position = [&](const scene::Knot& knot) { return (knot.value - origin) / unit; };
-  // Knots out of reach: the function's value at the end of the range stands for them.
+  // Knots beyond the representable range are replaced by the function's value at the end of that range.
   if (position(knots.front()) < -scalar_limit) add(-scalar_limit, function.evaluate(origin - scalar_limit * unit));
   for (std::size_t i = 0; i < knots.size(); ++i) {
     const scene::Knot& knot = knots[i];
@@ -86,7 +87,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps, emission);
   knot_count = places.size();
-  // About four cells a knot: evenly spread knots then have a cell of their own.
+  // About four cells per knot, so that evenly spaced knots have one cell each.
   std::vector<float> knots;
   knots.reserve(knot_count);
   for (const Place& place : places) knots.push_back(static_cast<float>(place.position));
@@ -104,7 +105,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
     before += n;
   }
   largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
-  // A search from the last knot looks as far ahead as its first step.
+  // A search that starts at the last knot reads up to its first step beyond it.
   stride = knot_count + 2 + std::max(padding, largest_step);
   rows.assign(column_count * stride, 0.0f);
   float* const edges = &rows[edge * stride];

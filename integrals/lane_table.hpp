@@ -12,30 +12,33 @@
 
 namespace tessera::integrals {
 
-/// A scalar as float lanes see it: the nearest whole number of units from the origin, kept within +-2^30. Vertices and
-/// knots go through this one rounding, so that data that equal a step's value stay equal to it.
+/// A scalar for float lanes: the nearest integer number of units from the origin, clamped to +-2^30. Vertices and knots
+/// use the same rounding, so that scalars equal to the value of a step remain equal to it.
 float lane_scalar(double value, double scalar_origin, double scalar_unit);
 
-/// Where the knots of a step go, of which the data may hold the very value.
+/// How the knots of a step are rounded, as the data may contain exactly the value of the step.
 enum class StepRounding {
-  nearest,  ///< as all knots
-  up        ///< to the next float at or above: what floats hold exactly stays on its side of the step
+  nearest,  ///< like all other knots
+  up        ///< to the next float at or above, so that values that are exact as floats stay on their side of the step
 };
 
-/// A transfer function laid out for float lanes (integrate_lanes-inl.h).
+/// A transfer function as a table for float lanes (integrate_lanes-inl.h).
 ///
-/// Intervals  the K distinct positions of its knots make K + 1, on each of which extinction and colour are linear.
-///            Those below the first and above the last are constant. A step is where two neighbours disagree; it takes
-///            no interval of its own, and its value is that of the interval above.
-/// Units      scalars as lane_scalar() gives them; lengths in `length_unit` world units. Extinction is stored times
-///            length_unit, and so is colour under independent emission, so that scenes of 1e-20 or 1e20 fit a float.
-/// Rounding   the table is the function through the rounded knots; knots beyond +-2^30 units are cut off there. Numbers
-///            above 1e18 are stored as 1e18.
-/// Halves     extinction is stored halved: the integral wants half the optical depth at either end of a segment.
-/// Accuracy   channel(s) = start + slope * (s - base), where base is the end of the interval at which extinction is
-///            smaller: both terms are then >= 0, and extinction keeps its relative accuracy down to a knot at zero.
+/// Intervals The K distinct positions of the knots separate K + 1 intervals, on each of which extinction and colour are
+///           linear. The first and the last interval are constant. A step is where two adjacent intervals disagree; it
+///           has no interval of its own, and its value is that of the interval above.
+/// Units     Scalars are values of lane_scalar(); lengths are in `length_unit` world units. Extinction is stored times
+///           length_unit, and so is colour under independent emission, so that scenes of size 1e-20 or 1e20 fit a
+///           float.
+/// Rounding  The table is the function through the rounded knots. Knots beyond +-2^30 units are cut off there. Numbers
+///           above 1e18 are stored as 1e18.
+/// Halves    Extinction is stored halved, because the integral uses half the optical depth at each end of a segment.
+/// Accuracy  channel(s) = start + slope * (s - base), where base is the end of the interval with the smaller
+///           extinction. Both terms are then >= 0, and extinction keeps its relative accuracy near a knot of zero
+///           extinction.
 struct LaneTable {
-  /// One row each; `edge[i]` is where interval i begins, edge[0] = -inf, edge[K + 1] = +inf and so on to the row's end.
+  /// One row each. `edge[i]` is the lower end of interval i; edge[0] = -inf, and edge[K + 1] = +inf up to the end of
+  /// the row.
   enum Column {
     edge,
     base,
@@ -49,13 +52,13 @@ struct LaneTable {
     blue_slope,
     column_count
   };
-  /// Rows are longer than K + 2 by this, so that whole vectors may be loaded from any interval on.
+  /// Rows are longer than K + 2 by at least this, so that whole vectors can be loaded from any interval onwards.
   static constexpr std::size_t padding = 64;
 
   /// `scalar_unit` and `length_unit` are powers of two.
   LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit, double length_unit,
             scene::Emission emission, StepRounding steps = StepRounding::nearest);
-  /// Of segments on a lattice, whose steps of depth are the lengths' unit.
+  /// For segments on a lattice: lengths are in its depth steps.
   LaneTable(const scene::TransferFunction& function, const scene::Lattice& lattice, scene::Emission emission)
       : LaneTable(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, emission) {}
 
@@ -63,25 +66,25 @@ struct LaneTable {
 
   std::size_t knot_count;  ///< K
   scene::Emission emission;
-  bool has_clear;           ///< an interval neither absorbs nor emits
-  std::size_t stride;       ///< of `rows`
+  bool has_clear;           ///< whether there is an interval that neither absorbs nor emits
+  std::size_t stride;       ///< elements per row of `rows`
   std::vector<float> rows;  ///< column_count rows
-  /// By edge, 1 to K: least and largest value of the knots that lie there once rounded.
+  /// Indexed by edge, 1 to K: the least and largest value of the knots rounded to that edge.
   std::vector<std::array<double, 2>> edge_values;
-  /// By edge, 1 to K: whether a step of the function, and nothing else, lies there.
+  /// Indexed by edge, 1 to K: whether exactly one step of the function is there, and no other knots.
   std::vector<std::uint8_t> is_step;
-  /// By edge, 1 to K: whether a knot between the first and the last that lie there shows anything, in a width that
-  /// lanes do not tell from a point.
+  /// Indexed by edge, 1 to K: whether a knot between the first and the last knot at the edge absorbs or emits. Lanes
+  /// cannot resolve the width of such a peak.
   std::vector<std::uint8_t> has_peak;
-  /// By edge, 1 to K: whether rounding moved knots so far that what a length unit absorbs, or sends, beside them
-  /// changes by more than 1e-7, or put knots of different values there.
+  /// Indexed by edge, 1 to K: whether rounding moved knots so far that absorption or emission per length unit near them
+  /// changes by more than 1e-7, or merged knots of different values.
   std::vector<std::uint8_t> is_moved;
   bool has_steps = false;  ///< whether any of the function's knots make a step
 
-  // Many knots: a uniform grid over the knots' range leads to a scalar's interval. Cell j covers the
-  // scalars for which truncating (s - grid_origin) * grid_scale, clamped to the grid, gives j.
+  // A uniform grid over the range of the knots, where the search for a scalar's interval starts. Cell j covers the
+  // scalars for which (s - grid_origin) * grid_scale, clamped to the grid and truncated, is j.
   float grid_origin = 0, grid_scale = 0, last_cell = 0;
-  std::vector<std::int32_t> knots_before;  ///< knots in lower cells
+  std::vector<std::int32_t> knots_before;  ///< by cell: the knots in all lower cells
   std::size_t largest_step = 0;            ///< first step of a binary search within a cell, a power of two
 };
 

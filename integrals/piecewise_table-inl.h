@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lanes of doubles, and the interval of a PiecewiseTable that each is in; included once per instruction set (Highway's
+// Finds the interval of a PiecewiseTable that each lane of doubles is in. Included once per instruction set (Highway's
 // include guard idiom).
 //
-// What      How many knots a ray at scalar s has passed: those at or below s if it goes up or is level, else those
-//           below s.
-// How       Few knots are all compared, which is cheaper than the gathers of a binary search.
+// What      The number of knots that a ray at scalar s has passed: those at or below s if its scalar increases or is
+//           constant, otherwise those below s.
+// How       Up to 12 knots are all compared, which is cheaper than the gathers of a binary search.
+// Ends      NaN is in interval 0.
 
 #if defined(TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
@@ -28,7 +29,7 @@ using DI = hwy::HWY_NAMESPACE::RebindToSigned<D>;
 using V = hwy::HWY_NAMESPACE::Vec<D>;
 using VI = hwy::HWY_NAMESPACE::Vec<DI>;
 
-/// The interval in which a ray at scalar s goes on.
+/// The interval that a ray at scalar s enters next.
 HWY_INLINE VI locate(const PiecewiseTable& table, V s, hwy::HWY_NAMESPACE::Mask<D> up) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;

@@ -33,7 +33,7 @@ PiecewiseTable::PiecewiseTable(const scene::TransferFunction& function) : knot_c
       channels[c].slope.push_back(width > 0 && std::isfinite(slope) ? slope : 0);
     }
   }
-  // Lanes load whole vectors of a short table.
+  // Lanes load whole vectors even if the table is short.
   const std::size_t padded = std::max<std::size_t>(knot_count + 1, 8);
   for (auto* column : {&below, &above, &base}) column->resize(padded, 0);
   for (Channel& channel : channels) channel.start.resize(padded, 0), channel.slope.resize(padded, 0);

@@ -8,7 +8,7 @@
 namespace tessera::integrals {
 namespace {
 
-constexpr double rounding = 1e-12;  // of a layer's optical depth
+constexpr double rounding = 1e-12;  // relative, of a layer's optical depth
 
 scene::Integrator exact(bool terminates) {
   scene::Integrator integrator;
@@ -28,8 +28,8 @@ RayLayers::RayLayers(const scene::TransferFunction& function, scene::Emission em
       enough_(limit_ * (1 - rounding)),
       layers_(peel.layers) {}
 
-/// Calls visit(u0, u1, extinction_0, extinction_1) for each piece of a stretch, 0 to 1 along it, between knots of the
-/// transfer function, front to back, until it returns false.
+/// Calls visit(u0, u1, extinction_0, extinction_1), front to back, for each piece of a stretch between knots of the
+/// transfer function, with positions from 0 to 1 along the stretch, until it returns false.
 template <class Visit>
 void RayLayers::visit_pieces(const Stretch& stretch, const Visit& visit) const {
   const double s0 = stretch.scalar_front, s1 = stretch.scalar_back;
@@ -65,7 +65,7 @@ void RayLayers::find_cuts(const Stretch& stretch, const OpenLayer& layer) {
         held += rest;
         return true;
       }
-      // length (k d + rise d^2 / 2) = limit - held, in the form without cancellation.
+      // Solves length (k d + rise d^2 / 2) = limit - held, in the form without cancellation.
       const double k = k0 + rise * x, q = std::max(0.0, limit_ - held) / length;
       const double d = 2 * q / (k + std::sqrt(std::max(0.0, k * k + 2 * rise * q)));
       x = x + d < 1 ? x + d : 1;
@@ -79,7 +79,7 @@ void RayLayers::find_cuts(const Stretch& stretch, const OpenLayer& layer) {
 
 void RayLayers::add(const Stretch& stretch, const SegmentBatch& batch, std::size_t k, OpenLayer& layer,
                     std::vector<RayLayer>& ended) {
-  constexpr double margin = 1e-9;  // more than the integrator's optical depth errs
+  constexpr double margin = 1e-9;  // exceeds the relative error of the integrator's optical depth
   const double least = layer.optical_depth + batch.optical_depth[k] * (1 + margin);
   cuts_.clear();
   if (!is_last(layer) && least >= limit_ * (1 - margin)) find_cuts(stretch, layer);
@@ -93,7 +93,8 @@ void RayLayers::add(const Stretch& stretch, const SegmentBatch& batch, std::size
   for (std::size_t i = 0; i < parts; ++i) {
     parts_.length[i] = stretch.length * (cut(i + 1) - cut(i));
     parts_.scalar_front[i] = at(s0, s1, cut(i)), parts_.scalar_back[i] = at(s0, s1, cut(i + 1));
-    // Scalars that differ by last places: a part of one scalar might be on a step that the stretch does not reach.
+    // If rounding makes both scalars of a part equal, the part could be placed on a step that the stretch does not
+    // reach.
     if (parts_.scalar_front[i] == parts_.scalar_back[i]) parts_.scalar_front[i] = s0, parts_.scalar_back[i] = s1;
   }
   integrator_.integrate(parts_);
@@ -137,7 +138,7 @@ void RayLayers::add_surface(double depth, const scene::SurfaceSet::Light& light,
   layer.red += layer.transmittance * light.red;
   layer.green += layer.transmittance * light.green;
   layer.blue += layer.transmittance * light.blue;
-  layer.optical_depth -= std::log1p(-light.opacity);  // infinite where it is opaque
+  layer.optical_depth -= std::log1p(-light.opacity);  // infinite where the surface is opaque
   layer.transmittance *= 1 - light.opacity;
   if (is_last(layer) || !is_full(layer.optical_depth)) return;
   const int number = layer.number;

@@ -15,60 +15,61 @@
 
 namespace tessera::integrals {
 
-/// A layer of a ray that is complete: light as if nothing lay in front of it.
+/// A complete layer of a ray. Its light does not include absorption by the layers in front of it.
 struct RayLayer {
-  double front, back;  ///< planar depths between which it shows
+  double front, back;  ///< planar depths between which the layer is visible
   double red, green, blue, optical_depth;
 };
 
-/// The layer that a ray has come to.
+/// The layer at the current position of a ray.
 struct OpenLayer {
-  int number = 0;                                          ///< from 0
-  double front = std::numeric_limits<double>::infinity();  ///< where it begins to show; infinite: nowhere yet
+  int number = 0;                                          ///< starting at 0
+  double front = std::numeric_limits<double>::infinity();  ///< depth at which it becomes visible; infinite until then
   double red = 0, green = 0, blue = 0, optical_depth = 0, transmittance = 1;
-  // The last stretch that shows; of a surface both depths are one.
+  // The last visible stretch; both depths of a surface are equal.
   double last_front = 0, last_back = 0, last_scalar_front = 0, last_scalar_back = 0;
 };
 
 /// Cuts rays into layers: opacity peeling (Moloney 2008, 5.3; Rezk-Salama and Kolb, "Opacity Peeling for Direct Volume
-/// Rendering", Computer Graphics Forum 25 (3), 2006). There a ray takes steps, and a layer ends with the step that
-/// brings its opacity to the threshold. Here it ends at the very place, wherever in a stretch that is.
+/// Rendering", Computer Graphics Forum 25 (3), 2006). In these papers a ray advances in steps, and a layer ends with
+/// the step that brings its opacity to the threshold. Here it ends at the exact position, anywhere in a stretch.
 ///
-/// Cut      where the optical depth since the last cut is -log(1 - threshold), or less by no more than a part in 1e12.
-///          Between knots of the transfer function it is a parabola in the position, whose root is known in closed
-///          form; the parts are integrated anew, each by itself.
-/// Surface  it has no inside to cut: what brings the opacity to the threshold or beyond is the end of the layer before
-///          the cut.
-/// Last     the layer Peel::layers is not cut: it has all that is left of the ray.
-/// Error    that of the `exact` integrator. Layers are cut in optical depth, so an error in it moves no more light from
-///          layer to layer than it is large.
+/// Cut       A layer ends where the optical depth since the last cut is -log(1 - threshold), or less by at most a part
+///           in 1e12. Between knots of the transfer function the optical depth is a parabola in the position, whose
+///           root is known in closed form. The parts are integrated again separately.
+/// Surface   A surface has no interior to cut. One that brings the opacity to the threshold or beyond belongs to the
+///           layer in front of the cut, and ends it.
+/// Last      The last of Peel::layers layers is not cut: it contains the rest of the ray.
+/// Error     That of the `exact` integrator. Layers are cut by optical depth, so an error of the optical depth moves no
+///           more light between layers than the error itself.
 class RayLayers {
  public:
-  /// A stretch of a ray whose scalar is linear.
+  /// A part of a ray on which the scalar is linear.
   struct Stretch {
     double front, back, scalar_front, scalar_back;  ///< planar depths, and the scalars there
-    double length;                                  ///< world length
-    double own = 1, white = 0;                      ///< what shading makes of a colour c: own * c + white
+    double length;                                  ///< in world units
+    double own = 1, white = 0;                      ///< shading turns a colour c into own * c + white
   };
 
-  /// A valid Peel. `terminates`: whether what cannot be seen behind the last layer's own matter may be left out.
+  /// `peel` must be valid. `terminates`: whether the last layer may end where the rest of the ray is invisible.
   RayLayers(const scene::TransferFunction& function, scene::Emission emission, const Peel& peel, bool terminates);
 
-  /// What stretches are to be integrated by before they are added: exact, whatever makes the picture.
+  /// The integrator for stretches passed to add(): `exact`, whichever integrator the frame uses.
   [[nodiscard]] const SegmentIntegrator& integrator() const { return integrator_; }
 
-  /// The next stretch of a ray, which is segment `k` of a batch that has been integrated. Appends the layers it ends.
+  /// Adds the next stretch of a ray, which is segment `k` of an integrated batch. Appends the layers that end in it.
   void add(const Stretch& stretch, const SegmentBatch& batch, std::size_t k, OpenLayer& layer,
            std::vector<RayLayer>& ended);
 
-  /// A surface of no thickness.
+  /// Adds a surface, which has no thickness.
   void add_surface(double depth, const scene::SurfaceSet::Light& light, OpenLayer& layer,
                    std::vector<RayLayer>& ended) const;
 
-  /// The ray's end: appends the last layer if it has any light or opacity.
+  /// Ends the ray: appends the last layer if it has any light or opacity.
   void end(OpenLayer& layer, std::vector<RayLayer>& ended) const;
 
-  /// At most what is let through of what comes next: of all layers but the last nothing may be left out.
+  /// Upper bound of the visibility of the rest of the ray. It is 1 before the last layer, as the light of a layer does
+  /// not include absorption by earlier layers.
   [[nodiscard]] double transmittance(const OpenLayer& layer) const {
     return is_last(layer) ? layer.transmittance : 1.0;
   }
@@ -84,9 +85,9 @@ class RayLayers {
   PiecewiseTable table_;
   SegmentIntegrator integrator_;
   bool independent_;
-  double limit_, enough_;  ///< optical depth of a layer, and what counts as that
+  double limit_, enough_;  ///< optical depth of a layer, and the least that counts as reaching it
   int layers_;
-  std::vector<double> cuts_;  ///< of the stretch at hand, 0 to 1 along it
+  std::vector<double> cuts_;  ///< of the current stretch, 0 to 1 along it
   SegmentBatch parts_;
 };
 

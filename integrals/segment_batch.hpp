@@ -6,18 +6,18 @@
 
 namespace tessera::integrals {
 
-/// Ray segments on their way through an integrator: what goes in and the light that comes out, one array a quantity.
+/// A batch of ray segments for an integrator with the resulting light, one array per quantity.
 ///
-/// Arrays hold `padding` elements more than `size`, so that the last vector of lanes may read and write past it.
+/// Arrays have `padding` more elements than `size`, so that the last vector of lanes may read and write past the end.
 struct SegmentBatch {
   static constexpr std::size_t padding = 16;
   static constexpr std::size_t bytes_each = 8 * sizeof(double);
 
   std::size_t size = 0;
-  // In. Length in world units along the ray; scalars at entry and exit, linear in between.
+  // Input. Length in world units along the ray; scalars at entry and exit, linear in between.
   std::vector<double> length, scalar_front, scalar_back;
-  // Out. Light that leaves the segment's front, linear RGB; optical depth int kappa dt, and transmittance exp(-optical
-  // depth).
+  // Output. Light that leaves the front of the segment, linear RGB; optical depth int kappa dt; transmittance
+  // exp(-optical depth).
   std::vector<double> red, green, blue, optical_depth, transmittance;
 
   void reserve(std::size_t capacity) {

@@ -13,8 +13,8 @@ SegmentTable::Constant constant_of(const scene::Knot& knot) {
   return {knot.extinction, knot.color.x, knot.color.y, knot.color.z};
 }
 
-constexpr double thin = 1e-6;   // an optical depth that stands for 0
-constexpr double opaque = 1e6;  // and one for infinity
+constexpr double thin = 1e-6;   // optical depth that represents 0
+constexpr double opaque = 1e6;  // optical depth that represents infinity
 
 }  // namespace
 
@@ -40,7 +40,7 @@ SegmentTable::SegmentTable(const scene::TransferFunction& function, scene::Emiss
   std::vector<double> mean(n);
   for (std::size_t front = 0; front < n; ++front) {
     batch.size = n;
-    // Thin, for the integrator stops where it is dark.
+    // A thin segment, because the integrator stops where the transmittance is low.
     const double length = most > 0 ? thin / most : 1;
     for (std::size_t back = 0; back < n; ++back)
       batch.length[back] = length, batch.scalar_front[back] = scalar(front), batch.scalar_back[back] = scalar(back);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interpolation in tables of floats by lanes of doubles; included once per instruction set (Highway's include guard
+// Interpolation in tables of floats by lanes of doubles. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What      The entries on either side of a place along an axis, and the line between them, in double precision.
-// Ends      Places are kept within the table; NaN is its first entry.
+// What      The entries on either side of a position along an axis, and linear interpolation between them in double
+//           precision.
+// Ends      Positions are clamped to the table; NaN becomes the first entry.
 
 #if defined(TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_
@@ -20,13 +21,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 
-/// Between which two entries of an axis, and where between them. Indices are whole doubles, which SIMD converts to the
-/// 32-bit ones that gather floats.
+/// A position on an axis: the entry below it, and the fraction of the step from that entry to the next. Indices are
+/// integers stored as doubles, which SIMD converts to the 32-bit indices of a gather of floats.
 struct Place {
   V below, part;
 };
 
-/// `x` in entries, clamped to [0, size - 1]; NaN goes to 0. size >= 2.
+/// The position `x`, in entries, clamped to [0, size - 1]; NaN becomes 0. size >= 2.
 HWY_INLINE Place place_in(V x, int size) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
@@ -35,13 +36,13 @@ HWY_INLINE Place place_in(V x, int size) {
   return {below, inside - below};
 }
 
-/// Linear between two entries.
+/// Linear interpolation between two entries.
 HWY_INLINE V mixed(V at_0, V at_1, V part) {
   namespace hn = hwy::HWY_NAMESPACE;
   return MulAdd(part, at_1 - at_0, at_0);
 }
 
-/// Indices below 2^31.
+/// Indices must be below 2^31.
 HWY_INLINE V gather_floats(const float* table, V index) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
