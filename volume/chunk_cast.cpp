@@ -23,7 +23,7 @@
 
 namespace tessera::volume {
 
-/// What lane rays and rays in double precision have in common.
+/// Common interface of rays in float lanes and rays in double precision.
 class ChunkCast::State {
  public:
   virtual ~State() = default;
@@ -35,7 +35,7 @@ class ChunkCast::State {
   virtual void emit(FragmentSink& sink, const std::stop_token& stop) = 0;
   [[nodiscard]] virtual GridCounters counters() const = 0;
 
-  const scene::GridGeometry* geometry = nullptr;  ///< that chunks are of
+  const scene::GridGeometry* geometry = nullptr;  ///< geometry of the volume that chunks divide
 };
 
 namespace {
@@ -115,7 +115,7 @@ class LaneChunks final : public ChunkCast::State {
     std::vector<UncertainRay> uncertain;
   };
 
-  /// Calls f(number of the tile, the thread's worker) for all tiles.
+  /// Calls f(tile number, the thread's worker) for all tiles.
   template <class F>
   void for_tiles(const std::stop_token& stop, const F& f) {
     arena_.execute([&] {
@@ -128,7 +128,7 @@ class LaneChunks final : public ChunkCast::State {
     });
   }
 
-  /// Row by row.
+  /// Index of the tile of a pixel, row by row.
   [[nodiscard]] std::size_t number_at(int x, int y) const {
     return static_cast<std::size_t>((y / TileRays::side - region_.y0 / TileRays::side) * columns_ + x / TileRays::side -
                                     region_.x0 / TileRays::side);
@@ -143,7 +143,7 @@ class LaneChunks final : public ChunkCast::State {
   std::vector<TilePlace> places_;  ///< of `tiles_`
   std::vector<TileState> tiles_;
   int columns_ = 0;
-  std::vector<std::size_t> numbers_;  ///< of tiles, row by row
+  std::vector<std::size_t> numbers_;  ///< indices into `tiles_`, row by row
   tbb::enumerable_thread_specific<Worker> workers_;
   std::uint64_t again_ = 0;
 };
@@ -217,8 +217,8 @@ class VoxelChunks final : public ChunkCast::State {
   struct Pixel {
     VoxelRay ray;
     RaySum sum;
-    double begun, reached;  ///< planar depths since the last emit()
-    double passed = 1;      ///< through what was before
+    double begun, reached;  ///< planar depths cast since the last emit()
+    double passed = 1;      ///< transmittance of the part before
     bool closed = false;
   };
 

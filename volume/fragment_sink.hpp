@@ -7,23 +7,23 @@
 
 namespace tessera::volume {
 
-/// The light of one ray between two of its places, as if nothing lay in front of it or behind.
+/// The light of one ray between two positions, as if nothing were in front of or behind them.
 ///
-/// Units   red, green, blue: linear light, already weighted with opacity; alpha: opacity. Rounding may leave them 1e-7
-///         below zero, or alpha that much above one. Depths are planar, world units.
-/// Order   fragments of one pixel do not overlap; `front over back` composites them.
+/// Units     red, green, blue: linear light, premultiplied by opacity; alpha: opacity. Rounding may make them negative
+///           by 1e-7, or alpha larger than one by as much. Depths are planar, in world units.
+/// Order     Fragments of one pixel do not overlap; `front over back` composites them.
 struct RayFragment {
   int x, y;       ///< pixel
-  float z_front;  ///< where its light begins: NaN if it has none
-  float z_back;   ///< where the part of the ray ends that it is of
+  float z_front;  ///< depth at which its light begins: NaN if it has none
+  float z_back;   ///< depth at which its part of the ray ends
   float red, green, blue, alpha;
-  float error_bound;  ///< what float lanes may err, so far as they add it up (lane_error_bound.hpp); else 0
+  float error_bound;  ///< error recorded by float lanes (lane_error_bound.hpp), otherwise 0
 };
 
-/// Takes what rays have gathered: an image, a compositor, a message to another process, a light's view.
+/// Receives the light of rays: an image, a compositor, a message to another process, a light's view.
 ///
-/// Threads   take() and finished() are called by several threads at once, for different pixels.
-/// Errors    what they throw ends the cast and comes out of it.
+/// Threads   take() and finished() are called by several threads concurrently, for different pixels.
+/// Errors    Exceptions thrown here end the cast and propagate out of it.
 class FragmentSink {
  public:
   FragmentSink() = default;
@@ -31,9 +31,10 @@ class FragmentSink {
   FragmentSink(const FragmentSink&) = delete;
   FragmentSink& operator=(const FragmentSink&) = delete;
 
-  /// At most one fragment a pixel; none of rays that met nothing of what was cast. The span is gone after the call.
+  /// At most one fragment per pixel, and none for rays that did not meet the cast part. The span is invalid after the
+  /// call.
   virtual void take(std::span<const RayFragment> fragments) = 0;
-  /// All fragments of these pixels have been given.
+  /// All fragments of these pixels have been passed to take().
   virtual void finished(const scene::PixelRect& /*pixels*/) {}
 };
 

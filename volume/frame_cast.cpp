@@ -18,28 +18,28 @@
 namespace tessera::volume {
 namespace {
 
-/// One thread's part.
+/// State of one thread.
 struct Worker {
   TileState tile;
   TileMemory memory;
   TileCounts counts;
-  std::vector<RayFragment> fragments;   ///< of one tile
+  std::vector<RayFragment> fragments;   ///< of the current tile
   std::vector<UncertainRay> uncertain;  ///< of all its tiles
-  std::vector<scene::PixelRect> late;   ///< pixels of tiles that have some
+  std::vector<scene::PixelRect> late;   ///< pixels of tiles with uncertain rays
   std::vector<TileTime> times;
 };
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
 std::unique_ptr<Worker> new_worker() { return std::make_unique<Worker>(); }
 
-/// Processor time of this thread: what others that share its core take of it does not count.
+/// Processor time of this thread, which excludes the time of other threads on the same core.
 double thread_microseconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
 }
 
-/// Calls f(number of the tile, the thread's worker) for all tiles.
+/// Calls f(tile number, the thread's worker) for all tiles.
 template <class F>
 void for_tiles(const FrameView& frame, std::size_t tiles, Workers& workers, const std::stop_token& stop, const F& f) {
   tbb::parallel_for(
@@ -71,7 +71,7 @@ FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<co
     worker.fragments.clear();
     worker.tile.fragments(frame, worker.fragments, worker.uncertain);
     sink.take(worker.fragments);
-    // begin() counts those that meet the volume.
+    // begin() counts rays that meet the volume; here only rays that meet the part count.
     const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
     if (!all) worker.counts.rays = rays_before + met;
     worker.times.push_back({worker.tile.pixels(), static_cast<float>(thread_microseconds() - begin)});

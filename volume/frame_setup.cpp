@@ -13,14 +13,14 @@
 namespace tessera::volume {
 namespace {
 
-/// World units: no ray goes further in one voxel of a regular grid.
+/// World units: upper bound of the length of a ray in one voxel of a regular grid.
 double longest_in_voxel(const scene::GridGeometry& geometry) {
   double sides = 0;
   for (int a = 0; a < 3; ++a) sides += glm::length(geometry.direction[a]) * std::abs(geometry.spacing[a]);
   return sides;
 }
 
-/// The linear part of the map from world to index times `unit`.
+/// The linear part of the map from world to index space times `unit`.
 std::array<glm::dvec3, 3> index_rows(const scene::GridGeometry& geometry, double unit) {
   const glm::dmat3 to_local = scene::world_to_local(geometry);
   std::array<glm::dvec3, 3> rows;
@@ -30,14 +30,15 @@ std::array<glm::dvec3, 3> index_rows(const scene::GridGeometry& geometry, double
   return rows;
 }
 
-/// Lowest and highest lane scalar of the volume.
+/// The lowest and highest lane scalar of the volume.
 std::pair<float, float> lane_range(const CellRanges& ranges) {
   if (ranges.range.empty()) return {0.0f, 0.0f};
   return {integrals::lane_scalar(ranges.range.low, ranges.lanes.origin, ranges.lanes.unit),
           integrals::lane_scalar(ranges.range.high, ranges.lanes.origin, ranges.lanes.unit)};
 }
 
-/// Lanes are below 2^29, so that a float leaves 2^5 at most, of which another leaves 2^-19; a gradient has two.
+/// Lane scalars are below 2^29, so rounding to float leaves a rest of at most 2^5. Stored as a float, the rest has an
+/// error of 2^-19. A gradient is a difference of two.
 constexpr float noise_of_rest = 0x1p-18f;
 
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
@@ -57,7 +58,8 @@ ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, c
     view.light[a] = number(glm::dot(rows[a], light));
     for (std::size_t b = 0; b < 3; ++b) view.metric[a][b] = number(glm::dot(rows[a], rows[b]));
   }
-  // A unit normal turns by no more than the noise's part of the gradient, and light changes by this much a turn.
+  // A unit normal turns by at most the ratio of the noise to the gradient. `turn` is the largest change of light per
+  // radian.
   const double turn = s.diffuse + s.specular * std::max(1.0, s.shininess);
   view.light_per_noise =
       number(turn * std::sqrt(glm::dot(rows[0], rows[0]) + glm::dot(rows[1], rows[1]) + glm::dot(rows[2], rows[2])));
@@ -98,13 +100,13 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.piece_tolerance = static_cast<float>(scene::error_budget::grid_piece(state.accuracy()));
   view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
   view_.lanes = state.ranges.lanes;
-  // Surfaces of small values, and gradients, ask for them as they are.
+  // Steps of the transfer function, surfaces and gradients require samples that are not rounded to integers.
   const bool wants_gradients = !view_.cell_data && (state.settings.grid.shading || surfaces_.any());
   view_.lanes.whole = in_steps(state.settings.integrator.kind) || (!table_.has_steps && !wants_gradients);
   view_.has_rest = wants_gradients && !view_.lanes.exact && !in_steps(state.settings.integrator.kind);
   if (view_.has_rest) view_.rest_noise = noise_of_rest;
   view_.tally = tally;
-  // A thousand packets or more, whatever the picture's size.
+  // A thousand packets or more in images of at least 32 tiles.
   const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
   view_.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
   view_.trace = state.settings.trace;
@@ -128,7 +130,8 @@ void FrameSetup::find_visible(RendererState& state) {
   cull_us_ = microseconds_since(begin);
 }
 
-/// A step between two values may show what neither of them shows, and the table is linear between its entries.
+/// A pre-integrated step between two values may be visible although neither of them is, and the table is interpolated
+/// linearly between its entries.
 std::vector<std::uint8_t> FrameSetup::visible_to_table(const RendererState& state) const {
   const auto [low, high] = lane_range(state.ranges);
   const float entry =
@@ -136,14 +139,14 @@ std::vector<std::uint8_t> FrameSetup::visible_to_table(const RendererState& stat
   const std::array<glm::dvec3, 3> rows =
       index_rows(state.source.geometry(), state.settings.grid.step * state.voxel_side);
   std::array<double, 3> reach;
-  // Places along rays are rounded by much less.
+  // The margin is much larger than the rounding of positions along rays.
   for (std::size_t a = 0; a < 3; ++a) reach[a] = glm::length(rows[a]) + 0.05;
   return visible_to_steps(state.ranges, table_, reach, 1.25f * entry);
 }
 
 void FrameSetup::set_up_surfaces(const RendererState& state, const scene::TransferFunction& function) {
   SurfaceView& view = surface_view_.emplace(surfaces_.set(), view_.lanes);
-  view.noise = 4 * error_bound_.noise;  // no less than that of any voxel (surface_pieces-inl.h)
+  view.noise = 4 * error_bound_.noise;  // at least that of any voxel (surface_pieces-inl.h)
   view.brightest = static_cast<float>(std::max(1.0, state.brightest(function)));
   view.unit = state.voxel_side;
   const std::array<glm::dvec3, 3> rows = index_rows(state.source.geometry(), view.unit);
@@ -154,7 +157,7 @@ void FrameSetup::set_up_surfaces(const RendererState& state, const scene::Transf
   view_.surfaces = &view;
 }
 
-/// What only some methods have.
+/// Sets up what only some integrators need.
 void FrameSetup::set_up_method(const RendererState& state, const scene::TransferFunction& function) {
   if (in_steps(state.settings.integrator.kind)) {
     view_.step = state.settings.grid.step * state.voxel_side / state.length_unit;
@@ -167,7 +170,7 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
                        {view_.cell_data, view_.largest_color, state.brightest(function), view_.error_tolerance,
                         longest_in_voxel(state.source.geometry()) / state.length_unit, state.length_unit});
     if (error_bound_.any()) view_.error_bound = &error_bound_;
-    if (!state.lanes_suffice(function)) view_.error_tolerance = -1;  // all rays again, in double precision
+    if (!state.lanes_suffice(function)) view_.error_tolerance = -1;  // cast all rays again in double precision
   }
   if (state.settings.integrator.kind != IntegratorKind::preintegrated || view_.tally != nullptr) return;
   const auto [low, high] = lane_range(state.ranges);

@@ -12,21 +12,21 @@
 
 namespace tessera::volume {
 
-/// All that the tiles of one frame of a regular grid share, made once a frame; view() points into it.
+/// The data that the tiles of one frame of a regular grid share, set up once per frame; view() refers to it.
 class FrameSetup {
  public:
-  /// A valid camera and size. `tally`: of a pilot pass; null for a picture. Uses the calling thread's arena. `state`
-  /// and `tally` must outlive it.
+  /// Camera and size must be valid. `tally`: for a pilot pass; null for an image. Uses the calling thread's arena.
+  /// `state` and `tally` must outlive it.
   FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
              const scene::TransferFunction& function, WorkTally* tally);
   FrameSetup(const FrameSetup&) = delete;
   FrameSetup& operator=(const FrameSetup&) = delete;
 
   [[nodiscard]] const FrameView& view() const { return view_; }
-  /// By cell of 8^3 voxels, and by brick: whether something of it shows.
+  /// By cell of 8^3 voxels, and by brick: whether any of it is visible.
   [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
   [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
-  /// Microseconds that finding them took.
+  /// Time taken to compute them, in microseconds.
   [[nodiscard]] std::uint64_t cull_us() const { return cull_us_; }
   [[nodiscard]] const GridSurfaces* surfaces() const { return &surfaces_; }
 

@@ -21,8 +21,8 @@
 
 namespace tessera::volume {
 
-/// A half-space that rays are kept in, in index space: constant + dot(slope, place) >= 0. The largest part of the slope
-/// is 1, so that values are voxels.
+/// A half-space to which rays are clipped, in index space: constant + dot(slope, position) >= 0. The largest component
+/// of the slope is 1 in magnitude, so that values are in voxels.
 struct KeptSide {
   double constant;
   glm::dvec3 slope;
@@ -30,7 +30,7 @@ struct KeptSide {
 
 /// Rays of all pixels in index space (voxels, scene/grid.hpp), affine in pixel coordinates.
 ///
-/// The ray of pixel (x, y), y down, is origin(x, y) + t * direction(x, y), where t is planar depth, world units.
+/// The ray of pixel (x, y), y downwards, is origin(x, y) + t * direction(x, y), where t is planar depth in world units.
 struct PixelRays {
   glm::dvec3 origin, origin_x, origin_y;  ///< origin(x, y) = origin + x * origin_x + y * origin_y
   glm::dvec3 direction, direction_x, direction_y;
@@ -38,56 +38,56 @@ struct PixelRays {
   double near_depth, far_depth;
   std::vector<KeptSide> kept;
 
-  /// A valid camera and size; a regular grid.
+  /// Camera and size must be valid, and the grid regular.
   PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
             std::span<const scene::HalfSpace> clip = {});
 };
 
-/// Light and material as kernels want them. Gradients are per voxel along the grid's axes; with W the linear part of
-/// the map from world to index times `unit`, a world gradient is W^T g.
+/// Light and material for the kernels. Gradients are per voxel along the grid's axes; with W the linear part of the map
+/// from world to index space times `unit`, a world gradient is W^T g.
 struct ShadingView {
   float ambient, diffuse, specular, shininess;
-  float metric[3][3];     ///< W W^T: squares of world gradients
-  float light[3];         ///< W l, l the unit vector towards the light: products with it
-  float light_per_noise;  ///< by how much light may change with a gradient's components, times the gradient's length
-  double unit;            ///< world units a world gradient is taken per: a voxel's side, so that squares fit a float
-  double light_eye[3];    ///< l along the camera's right and up axes and towards the eye
+  float metric[3][3];     ///< W W^T, for squared lengths of world gradients
+  float light[3];         ///< W l, where l is the unit vector towards the light, for dot products with it
+  float light_per_noise;  ///< bound of the change of light with a gradient's components, times the gradient's length
+  double unit;          ///< length unit of world gradients, in world units: a voxel's side, so that squares fit a float
+  double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
 };
 
-/// All that one frame's tiles share; read-only while they are made.
+/// The data shared by all tiles of one frame; read-only while they are rendered.
 struct FrameView {
   const PixelRays* rays;
   const integrals::LaneTable* table;
   const CellRanges* ranges;
-  LaneSamples lanes;                  ///< of samples: `ranges->lanes`, which keeps fractions where steps ask for them
-  bool has_rest = false;              ///< gradients are wanted, of samples that lanes round
-  float rest_noise = 0;               ///< then: what of a gradient's components, lane units, may be rounding
+  LaneSamples lanes;                  ///< `ranges->lanes`, but without rounding to integers where fractions are needed
+  bool has_rest = false;              ///< gradients are needed, and lanes round the samples
+  float rest_noise = 0;               ///< then: rounding error of a gradient's components, in lane units
   const std::uint8_t* visible;        ///< by cell of `ranges`
-  bool some_hidden;                   ///< whether some cell is not visible
-  bool some_clear;                    ///< whether the transfer function shows nothing of some value in the volume
-  const std::uint8_t* brick_visible;  ///< by brick: whether it holds voxels of a visible cell
+  bool some_hidden;                   ///< whether any cell is not visible
+  bool some_clear;                    ///< whether the transfer function is invisible at some value in the volume
+  const std::uint8_t* brick_visible;  ///< by brick: whether it has voxels of a visible cell
   BrickCache* bricks;
   scene::GridIndex voxels, samples;
   bool cell_data;
-  double length_unit;         ///< of the table, world units
-  float least_transmittance;  ///< a ray that lets less through is done
+  double length_unit;         ///< of the table, in world units
+  float least_transmittance;  ///< a ray with less transmittance ends
   float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
   float largest_color;
-  const LaneErrorBound* error_bound = nullptr;        ///< null: none that matters
-  float error_tolerance = 0;                          ///< a ray that may err more is cast again
-  double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
-  const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
-  const ShadingView* shading = nullptr;               ///< null: none
-  const SurfaceView* surfaces = nullptr;              ///< null: there are none
-  WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts where work would be
-  int pilot_packets = 0;                              ///< of each tile
+  const LaneErrorBound* error_bound = nullptr;  ///< null: errors are negligible
+  float error_tolerance = 0;                    ///< a ray with a larger error bound is cast again
+  double step = 0;                              ///< sampled, preintegrated: length in the table's unit; otherwise 0
+  const PreintegratedTable* preintegrated = nullptr;  ///< null: not preintegrated
+  const ShadingView* shading = nullptr;               ///< null: no shading
+  const SurfaceView* surfaces = nullptr;              ///< null: no surfaces
+  WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts the work by position
+  int pilot_packets = 0;                              ///< number cast in each tile
   scene::Trace* trace;
 };
 
 /// Sums over tiles.
 struct TileCounts {
   std::uint64_t rays = 0, voxels_visited = 0, samples = 0;
-  std::uint64_t again = 0;  ///< rays in double precision
+  std::uint64_t again = 0;  ///< rays cast again in double precision
 
   TileCounts& operator+=(const TileCounts& other) {
     rays += other.rays, voxels_visited += other.voxels_visited, samples += other.samples, again += other.again;

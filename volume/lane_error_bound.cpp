@@ -11,7 +11,7 @@ namespace {
 
 using integrals::LaneTable;
 
-/// What one interval of the table has at a scalar.
+/// The values of one interval of the table at a scalar.
 struct Matter {
   double extinction = 0;
   std::array<double, 3> color{};
@@ -26,21 +26,21 @@ Matter matter_at(const LaneTable& table, std::size_t interval, double s) {
           {channel(LaneTable::red), channel(LaneTable::green), channel(LaneTable::blue)}};
 }
 
-/// Largest difference of two colours, each times a factor.
+/// The largest difference of two colours, each multiplied by a factor.
 double color_difference(const Matter& a, double times_a, const Matter& b, double times_b) {
   double most = 0;
   for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(times_a * a.color[c] - times_b * b.color[c]));
   return most;
 }
 
-/// Light and opacity, per unit of length, in which two of them differ.
+/// The difference of two of them in light and opacity per unit of length.
 double difference(const Matter& a, const Matter& b, bool independent, double brightest) {
   const double light = color_difference(a, independent ? 1 : a.extinction, b, independent ? 1 : b.extinction);
   const double opacity = std::abs(a.extinction - b.extinction);
   return std::min(1e18, std::max(opacity, light + opacity * brightest));
 }
 
-/// Of numbers, those that matter; none if none does.
+/// Sets numbers that are not above `least` to zero; returns an empty vector if none is above.
 std::vector<float> those_above(double least, std::vector<float> numbers) {
   bool any = false;
   for (float& n : numbers) {
@@ -52,7 +52,7 @@ std::vector<float> those_above(double least, std::vector<float> numbers) {
 
 float bounded(double x) { return static_cast<float>(std::min(x, 1e18)); }
 
-/// By edge of the table: how far rounding moved its knots, lane scalars.
+/// By edge of the table: the distance by which rounding moved its knots, in lane scalars.
 std::vector<double> knots_moved(const scene::TransferFunction& function, const LaneTable& table,
                                 const CellRanges& ranges) {
   const float* const edges = table.column(LaneTable::edge);
@@ -68,7 +68,7 @@ std::vector<double> knots_moved(const scene::TransferFunction& function, const L
   return moved;
 }
 
-/// The knots that an edge of the table stands for, where they have several values; else none.
+/// The knots merged into an edge of the table if they have different values, otherwise none.
 std::span<const scene::Knot> knots_at(const scene::TransferFunction& function, const LaneTable& table,
                                       std::size_t edge) {
   const auto& [least, largest] = table.edge_values[edge];
@@ -97,7 +97,7 @@ LaneErrorBound::LaneErrorBound(const scene::TransferFunction& function, const La
     for (const double s : {table.column(LaneTable::edge)[n], table.column(LaneTable::edge)[n + 1]})
       if (std::isfinite(s))
         densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
-  // Places of ends are off by 1e-6 of a voxel.
+  // The ends' positions have an error of 1e-6 voxels.
   ends = 4e-6 * densest * settings.longest > settings.least;
 }
 
@@ -109,8 +109,9 @@ void LaneErrorBound::find_noise(const CellRanges& ranges, bool cell_data) {
     reach = std::max({reach, std::abs(low), std::abs(high)});
     steepest = std::max(steepest, high - low);
   }
-  // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h); cell data: of the sample, and of
-  // an edge. No less than a float's last place there, so that what is added to an edge counts.
+  // Two roundings of the field itself, and positions with an error of 5e-7 voxels (packet_lanes-inl.h). Cell data:
+  // rounding of the sample and of an edge. At least the last place of a float there, so that adding it to an edge has
+  // an effect.
   noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-23 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
@@ -132,7 +133,7 @@ void LaneErrorBound::find_steps(const scene::TransferFunction& function, const L
     while (above < table.knot_count && edges[above + 1] < edges[e] + noise) ++above;
     const Matter a = matter_at(table, below, edges[e] - (below < e - 1 ? noise : 0.0f)),
                  b = matter_at(table, above, edges[e] + (above > e ? noise : 0.0f));
-    // Cell data is all samples.
+    // The field of cell data consists of samples only, which are exact here.
     if (settings.cell_data && sharp[e] != 0) continue;
     double differs = difference(a, b, independent, settings.brightest), colors = color_difference(a, 1, b, 1);
     Matter dense = a.extinction > b.extinction ? a : b, thin = a.extinction > b.extinction ? b : a;
@@ -140,7 +141,7 @@ void LaneErrorBound::find_steps(const scene::TransferFunction& function, const L
       const double color_unit = independent ? settings.unit : 1;
       const Matter m{knot.extinction * settings.unit,
                      {knot.color.x * color_unit, knot.color.y * color_unit, knot.color.z * color_unit}};
-      // Of two knots at most the sum of what each differs from `a`.
+      // Two knots differ by at most the sum of their differences from `a`.
       differs = std::max(differs, 2 * difference(m, a, independent, settings.brightest));
       colors = std::max(colors, 2 * color_difference(m, 1, a, 1));
       if (m.extinction > dense.extinction) dense = m;

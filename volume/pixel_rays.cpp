@@ -17,7 +17,7 @@ PixelRays::PixelRays(const scene::Camera& camera, scene::ImageSize size, const s
   const bool perspective = camera.projection == scene::ProjectionKind::perspective;
   const double half_height =
       perspective ? std::tan(0.5 * camera.view_angle * std::numbers::pi / 180) : camera.parallel_scale;
-  const double pixel = 2 * half_height / size.height;  // world units; perspective: at depth one
+  const double pixel = 2 * half_height / size.height;  // world units; for perspective at depth one
   const double x0 = 0.5 * size.width, y0 = 0.5 * size.height;
   const glm::dvec3 eye = to_index(camera.position - geometry.origin), forward = to_index(basis.forward);
   const glm::dvec3 across = to_index(basis.right * pixel), down = to_index(basis.up * -pixel);

@@ -28,7 +28,7 @@ scene::PixelRect within(scene::ImageSize size, const scene::PixelRect& region) {
           std::min(size.height, region.y1)};
 }
 
-/// The rectangle round all of them.
+/// The bounding rectangle of the regions.
 scene::PixelRect around(std::span<const scene::PixelRect> regions) {
   scene::PixelRect all = regions.empty() ? scene::PixelRect{0, 0, 0, 0} : regions.front();
   for (const scene::PixelRect& r : regions)
@@ -36,7 +36,7 @@ scene::PixelRect around(std::span<const scene::PixelRect> regions) {
   return all;
 }
 
-/// Pixels of a map, each with its ray's planes of the lattice.
+/// A cost map for rectilinear grids: the cost of a pixel is the number of lattice planes that its ray crosses.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
                        std::span<const scene::HalfSpace> clip, const CostSettings& settings) {
   CostMap map;
@@ -71,7 +71,7 @@ const scene::GridGeometry& Renderer::geometry() const { return state_->source.ge
 
 namespace {
 
-/// By cell: whether the function, or a surface, shows anything of it.
+/// By cell: whether the function or a surface makes any of it visible.
 std::vector<std::uint8_t> cells_shown(const RendererState& state, const scene::TransferFunction& function) {
   std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(function));
   const GridSurfaces surfaces = state.surfaces_of(function);
@@ -79,7 +79,7 @@ std::vector<std::uint8_t> cells_shown(const RendererState& state, const scene::T
   return visible;
 }
 
-/// The bricks that hold any of the visible cells.
+/// The bricks that contain visible cells.
 std::vector<CostBox> bricks_shown(const RendererState& state, const std::vector<std::uint8_t>& cells) {
   const BrickLayout& layout = state.bricks.layout();
   const std::vector<std::uint8_t> shown = volume::visible_bricks(state.ranges, cells, layout);
@@ -108,7 +108,7 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
 
 namespace {
 
-/// A view, and what of it is cast.
+/// A view, and the part of it that is cast.
 struct View {
   const scene::Camera& camera;
   scene::ImageSize size;
@@ -116,7 +116,7 @@ struct View {
   VoxelBox part;
 };
 
-/// What a cast gives in addition to its light.
+/// Results of a cast in addition to its light.
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
   FrameWork work;
@@ -124,7 +124,7 @@ struct Cast {
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
 
-/// Of the bricks that show, those with voxels of a part.
+/// Restricts the visible bricks to those with voxels of a part.
 std::vector<std::uint8_t> bricks_in(const VoxelBox& part, const BrickLayout& layout, std::vector<std::uint8_t> shown) {
   for (std::size_t brick = 0; brick < shown.size(); ++brick) {
     const scene::GridIndex place = layout.place(brick);

@@ -24,50 +24,50 @@
 
 namespace tessera::volume {
 
-/// A session's settings, and what differs between its processes and data sets. `memory_bytes` is the budget of the
+/// A session's settings, and those that differ between its processes and data sets. `memory_bytes` is the budget for
 /// bricks in memory.
 struct RenderSettings : Settings {
-  std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
-  int parts = 1;  ///< that rays are composited of, each by one process: all of them together have the accuracy asked
+  std::vector<scene::HalfSpace> clip{};  ///< half-spaces to which rays are clipped (tessera/selection.hpp)
+  int parts = 1;  ///< processes that each cast a part of a ray; together they have the requested accuracy
 };
 
-/// Whether rays are sampled in steps of GridSettings::step; else they go from voxel to voxel.
+/// Whether rays are sampled in steps of GridSettings::step; otherwise they go from voxel to voxel.
 inline bool in_steps(IntegratorKind kind) {
   return kind == IntegratorKind::sampled || kind == IntegratorKind::preintegrated;
 }
 
-/// What happened in one frame.
+/// Statistics of one frame.
 struct RenderStatistics : GridCounters {
   std::string instruction_set;  ///< of the kernels that ran
 };
 
-/// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
+/// Regions whose bounds are multiples of this many pixels share no work with neighbouring regions.
 inline constexpr int region_grain = 4;
 
-/// What of an image is cast, and what is kept in addition to it.
+/// The part of the image to cast, and the additional results to return.
 struct CastRequest {
-  /// No two share a tile; by default the whole image.
+  /// No two regions may share a tile. Default: the whole image.
   std::vector<scene::PixelRect> regions{{0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()}};
-  /// Sort-last: the light of a part of the volume, as if the rest of it were empty. The regions hold all that it may
-  /// cover (footprint() in cost_map.hpp). Images of parts that make up the volume, composited front to back, are the
-  /// image to rounding. Bricks that hold voxels of the part are read, no others. IntegratorKind::preintegrated would
+  /// Sort-last: casts only this part of the volume, as if the rest were empty. The regions must contain all pixels that
+  /// it may cover (footprint() in cost_map.hpp). Images of parts that make up the volume, composited front to back,
+  /// equal the image up to rounding. Only bricks with voxels of the part are read. IntegratorKind::preintegrated would
   /// miss steps from one part to the next.
   std::optional<VoxelBox> part{};
   bool error_bounds = false, tile_times = false;
 };
 
-/// A frame of a volume.
+/// A rendered frame of a volume.
 struct Frame {
-  scene::Image image;  ///< of pixels outside of the regions nothing
+  scene::Image image;  ///< empty outside the regions
   RenderStatistics statistics;
-  /// If asked for: by pixel, what float lanes may err there in linear RGBA, so far as they add it up
-  /// (lane_error_bound.hpp); above half the accuracy asked a pixel was cast again in double precision. Zero where no
-  /// ray was cast, and all over rectilinear grids.
+  /// If requested: for each pixel, the recorded error bound of float lanes in linear RGBA (lane_error_bound.hpp).
+  /// Pixels above half the requested accuracy, divided by the number of parts, were cast again in double precision.
+  /// Zero where no ray was cast, and for rectilinear grids.
   std::vector<float> error_bounds;
-  std::vector<TileTime> tile_times;  ///< if asked for; none of rectilinear grids
+  std::vector<TileTime> tile_times;  ///< if requested; empty for rectilinear grids
 };
 
-/// A pilot pass: of the tiles of a region (none: the image) one in `turns` is cast, another with each `number`.
+/// A pilot pass casts one in `turns` tiles of a region (default: the image), a different one for each `number`.
 struct PilotPass {
   std::optional<scene::PixelRect> region{};
   std::size_t number = 0, turns = 1;
@@ -80,49 +80,49 @@ struct RendererState;
 class WorkTally;
 class ObjectSplit;
 
-/// Casts rays through one volume many times, in one process, by the ranges of values in its cells, by which empty space
-/// is skipped (cell_ranges.hpp). The source must outlive the renderer.
+/// Renders one volume repeatedly, in one process, by ray casting. The value ranges of its cells are used to skip empty
+/// space (cell_ranges.hpp). The source must outlive the renderer.
 ///
-/// Bits   on one instruction set the image is the same for any brick size, memory budget, cache policy, thread count
-///        and region.
+/// Bits      On one instruction set the image is the same for any brick size, memory budget, cache policy, number of
+///           threads and region.
 class Renderer {
  public:
-  /// Of settings that are valid for grids (tessera::validate), and for this one: not in steps if it is rectilinear,
-  /// iso-surfaces of point data alone. Takes ranges that have been found before, of this very source.
+  /// The settings must be valid for grids (tessera::validate) and for this grid: no integrators with steps for
+  /// rectilinear grids, iso-surfaces for point data only. `ranges` must have been computed from the same source.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges);
-  /// The same, of ranges that others use too.
+  /// The same with shared ranges.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, std::shared_ptr<const CellRanges> ranges);
-  /// Reads all samples once, for their ranges.
+  /// Reads all samples once to compute their ranges.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the
-  /// bricks that the threads need at one time. `watch` is called with finished tiles of the regions; once it is asked
-  /// to stop, render() throws scene::FrameStopped within a tile of rays, and can be called again.
+  /// Throws Error(bad_input) for an invalid camera or size, and Error(system_failure) if the budget cannot hold the
+  /// bricks that the threads need at the same time. `watch` is called with finished tiles of the regions. After a stop
+  /// request render() throws scene::FrameStopped within a tile of rays; it can be called again afterwards.
   Frame render(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                const CastRequest& request = {}, scene::FrameWatch* watch = nullptr);
 
-  /// The pilot pass: casts every 32nd ray of the image (more of a small one), and counts where in the volume the work
-  /// was (learned_work.hpp); makes no light. As render() otherwise.
+  /// The pilot pass: casts every 32nd ray of the image (more of small images), and counts the work by position in the
+  /// volume (learned_work.hpp) without producing light. Otherwise like render().
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                    WorkTally& tally, const PilotPass& pass = {}, scene::FrameWatch* watch = nullptr);
 
-  /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
-  /// voxels, or the bricks, that the transfer function shows. What this renderer knows of `settings` (voxels or
-  /// lengths, the length unit, where rays end) is its own.
+  /// The estimated cost of each pixel, used to split the image between processes (cost_map.hpp): from the cells of 8^3
+  /// voxels, or the bricks, that are visible under the transfer function. The renderer overrides the members of
+  /// `settings` that depend on it: voxels or lengths, the length unit, and the depth at which rays end.
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
                                  const scene::TransferFunction& transfer_function, CostSettings settings) const;
 
-  /// The volume cut into boxes for `processes`, for this transfer function (object_split.hpp).
+  /// Splits the volume into boxes for `processes` processes, for this transfer function (object_split.hpp).
   [[nodiscard]] ObjectSplit object_split(const scene::TransferFunction& transfer_function, int processes) const;
 
-  /// Of the whole volume, blank samples left out.
+  /// The value range of the whole volume without blank samples.
   [[nodiscard]] scene::ValueRange range() const;
   [[nodiscard]] const scene::GridGeometry& geometry() const;
 
-  /// Corners, in index space, of the bricks that the transfer function shows anything of.
+  /// Corners, in index space, of the bricks that are visible under the transfer function.
   [[nodiscard]] std::vector<std::array<glm::dvec3, 2>> visible_bricks(
       const scene::TransferFunction& transfer_function) const;
 

@@ -23,7 +23,7 @@
 
 namespace tessera::volume {
 
-/// World units: the side of a cube as large as a mean voxel.
+/// World units: the side of a cube with the mean volume of a voxel.
 double voxel_side_of(const scene::GridGeometry& geometry);
 /// World units: a power of two near the mean voxel's side.
 double length_unit_of(double voxel_side);
@@ -33,7 +33,7 @@ inline std::uint64_t microseconds_since(std::chrono::steady_clock::time_point be
       std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count());
 }
 
-/// What a Renderer keeps from frame to frame.
+/// The state of a Renderer that persists between frames.
 struct RendererState {
   RendererState(const scene::SampleSource& source_, const RenderSettings& settings_,
                 std::shared_ptr<const CellRanges> ranges_)
@@ -56,14 +56,14 @@ struct RendererState {
             in_steps(settings.integrator.kind) ? integrals::StepRounding::nearest : integrals::StepRounding::up};
   }
 
-  /// A ray that lets less through is done.
+  /// A ray with less transmittance ends.
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
     if (in_steps(settings.integrator.kind)) return 1e-6f;
     return static_cast<float>(
         std::min(0.25, scene::error_budget::ended(accuracy()) / std::max(1.0, brightest(function))));
   }
-  /// Light that may come along a ray.
+  /// Upper bound of the light along a ray.
   [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
     const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
     if (settings.emission != scene::Emission::independent) return std::max(surfaces, function.max_color());
@@ -73,7 +73,7 @@ struct RendererState {
   [[nodiscard]] GridSurfaces surfaces_of(const scene::TransferFunction& function) const {
     return settings.surfaces.empty() ? GridSurfaces() : GridSurfaces(settings.surfaces, function, ranges);
   }
-  /// Of a cast in double precision; `visible` and `surfaces` must outlive it.
+  /// Settings of a cast in double precision; `visible` and `surfaces` must outlive it.
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
                                                  std::span<const std::uint8_t> visible,
                                                  const GridSurfaces* surfaces) const {
@@ -87,7 +87,7 @@ struct RendererState {
     return settings.integrator.kind == IntegratorKind::exact ? scene::error_budget::casting_of_exact_grid
                                                              : settings.integrator.accuracy;
   }
-  /// Whether float lanes are near enough for such a function.
+  /// Whether float lanes are accurate enough for such a function.
   [[nodiscard]] bool lanes_suffice(const scene::TransferFunction& function) const {
     const scene::Box box = scene::bounds(source.geometry());
     const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
@@ -98,7 +98,7 @@ struct RendererState {
                      settings.integrator.accuracy;
   }
 
-  /// By cell: what a cast in double precision of a whole frame has to walk through.
+  /// By cell: the cells that a cast of a whole frame in double precision has to traverse.
   [[nodiscard]] std::vector<std::uint8_t> visible_to_walks(const integrals::LaneTable& table) const {
     std::vector<std::uint8_t> visible = visible_cells(ranges, table);
     show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
@@ -111,8 +111,8 @@ struct RendererState {
   std::shared_ptr<const CellRanges> ranges_owner;
   const CellRanges& ranges;
   BrickCache bricks;
-  std::optional<LookAhead> look_ahead;  ///< proximity, of regular grids
-  BrickCache::Counts counts_before;     ///< as the last frame's statistics ended: loads ahead count for the next one
+  std::optional<LookAhead> look_ahead;  ///< only for the proximity policy and regular grids
+  BrickCache::Counts counts_before;     ///< at the end of the last frame; later preloads count for the next frame
 };
 
 }  // namespace tessera::volume

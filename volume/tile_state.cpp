@@ -78,8 +78,8 @@ bool TileState::enter(const FrameView& frame, const VoxelBox& chunk, int code) {
   bool any = false;
   for (int r = 0; r < TileRays::count; ++r) {
     double from = rays.k_in[r], to = rays.closed[r] != 0 ? -1 : rays.k_out[r];
-    // Cuts [from, to) to where a + b k is in the chunk. Chunks that share a plane find it at the same k. A ray along
-    // the plane is on its far side, but for the volume's last plane.
+    // Clips [from, to) to where a + b k is in the chunk. Chunks that share a plane compute the same k for it. A ray in
+    // the plane belongs to the chunk above it, or below the volume's last plane.
     const auto cut = [&](double a, double b, std::size_t axis) {
       const double low = number(chunk.low[axis]), high = number(chunk.high[axis]), end = number(frame.voxels[axis]);
       if (b == 0) {
@@ -87,7 +87,7 @@ bool TileState::enter(const FrameView& frame, const VoxelBox& chunk, int code) {
         return;
       }
       const double at_low = (low - a) / b, at_high = (high - a) / b;
-      // At the volume's ends k_in and k_out have it.
+      // k_in and k_out already clip to the ends of the volume.
       if (low > 0) (b > 0 ? from : to) = b > 0 ? std::max(from, at_low) : std::min(to, at_low);
       if (high < end) (b > 0 ? to : from) = b > 0 ? std::min(to, at_high) : std::max(from, at_high);
     };
