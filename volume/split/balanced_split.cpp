@@ -22,7 +22,7 @@ class EdgesOfRow {
     count_ = (width + region_grain - 1) / region_grain * per_grain_;
   }
 
-  /// The number of the picture's right edge; the left one's is 0.
+  /// The number of the image's right edge; the left one is 0.
   [[nodiscard]] int last() const { return count_; }
   [[nodiscard]] SteppedEdge operator[](int number) const {
     const int tile_rows = number % per_grain_;
@@ -45,7 +45,7 @@ class Search {
   ImageSplit find() {
     const double all = costs_.of({0, 0, costs_.size().width, costs_.size().height}) +
                        std::accumulate(beside_.begin(), beside_.end(), 0.0);
-    // The most that a process may have: from what is too little to what is enough.
+    // The search interval for the largest load: from a load that is too small to one that is sufficient.
     double low = all / static_cast<double>(beside_.size()), high = 1.1 * low;
     while (!fits(high)) low = high, high *= 1.5;
     for (int n = 0; n < 12; ++n) {
@@ -65,8 +65,8 @@ class Search {
     return cost;
   }
 
-  /// Whether the processes from `first` on, as many as the row has, can have the row's pixels with `most` each. Writes
-  /// their edges.
+  /// Whether the row's processes, beginning with `first`, can render the row's pixels with a load of at most `most`
+  /// each. Writes their edges.
   bool fits_row(std::size_t row, std::size_t first, int y0, int y1, double most, std::vector<int>& edges) const {
     const EdgesOfRow all(y0, y1, costs_.size().width);
     edges.assign(1, 0);
@@ -86,7 +86,7 @@ class Search {
     return edges.back() == all.last();
   }
 
-  /// Rows from the top, each as high as fits.
+  /// Makes rows from the top, each as high as possible.
   bool fits(double most) {
     std::size_t first = 0;
     int y0 = 0;
@@ -114,7 +114,7 @@ class Search {
     double most;
   };
 
-  /// The edges of a row, with the least that fits.
+  /// The edges of a row with the smallest possible load.
   [[nodiscard]] std::vector<int> even_edges(std::size_t row) const {
     const Row& r = rows_[row];
     std::vector<int> edges, best;

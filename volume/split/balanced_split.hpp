@@ -8,11 +8,11 @@
 
 namespace tessera::volume {
 
-/// Cuts a picture so that the process that has most to do has as little as can be: rows of columns (Moloney, "Ray
+/// Divides an image so that the largest load of any process is as small as possible: rows of columns (Moloney, "Ray
 /// Coherence in Parallel Volume Rendering", SFU 2008, 4.2), whose vertical edges step by `region_grain` pixels between
-/// two rows of tiles where that is more even. A process has what its
-/// pixels cost (`costs`), what tiles that it shares with others cost once more, and what it does beside, by process,
-/// nanoseconds.
+/// two rows of tiles where that improves the balance. The load of a process is the cost of its pixels (`costs`), the
+/// additional cost of tiles that it shares with other processes, and its other work (`beside`, by process, in
+/// nanoseconds).
 ImageSplit balanced_split(const TileCosts& costs, std::span<const double> beside);
 
 }  // namespace tessera::volume

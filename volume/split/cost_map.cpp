@@ -17,25 +17,25 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double units = 64;  // of cost, a voxel
+constexpr double units = 64;  // cost of a voxel
 constexpr double silhouette_weight = 0.25;
 constexpr int band_rows = 16;
 
-/// A box's outline in the map.
+/// The outline of a box in the map.
 struct Outline {
-  std::array<glm::dvec2, 8> corner;  ///< map pixels; bit a of the number: high along axis a
+  std::array<glm::dvec2, 8> corner;  ///< in map pixels; bit a of the index: at the high end of axis a
   int x0, y0, x1, y1;                ///< map pixels whose centres it may cover
   bool behind_eye;
-  double total;  ///< cost of the whole box, by depth at its centre
+  double total;  ///< cost of the whole box for the depth of its centre
 };
 
-/// Rows [y0, y1) of the map's region, and what each of their pixels costs so far.
+/// Rows [y0, y1) of the map's region, and the costs of their pixels so far.
 struct Band {
   int y0, y1;
   std::vector<double> cost;  ///< row by row
 };
 
-/// Maps, rays and boxes of one frame.
+/// Computes the costs of one frame.
 class Costs {
  public:
   Costs(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
@@ -77,7 +77,7 @@ class Costs {
     return o;
   }
 
-  /// Adds each ray's way through the box.
+  /// Adds each ray's path through the box.
   void add_way(const CostBox& box, const Outline& o, Band& band) const {
     for (int y = std::max(o.y0, band.y0); y < std::min(o.y1, band.y1); ++y)
       for (int x = o.x0; x < o.x1; ++x) {
@@ -92,14 +92,14 @@ class Costs {
       }
   }
 
-  /// Adds what the caster visits of each ray.
+  /// Adds the cells that the caster visits along each ray.
   void add_visited(const VisibleCells& cells, Band& band) const {
     for (int y = band.y0; y < band.y1; ++y)
       for (int x = region_.x0; x < region_.x1; ++x)
         at(band, x, y) += visited(cells, (x + 0.5) / settings_.resolution, (y + 0.5) / settings_.resolution);
   }
 
-  /// A sphere round the box, its chords scaled to the box's total.
+  /// Adds a sphere around the box, with its chords scaled to the box's total.
   void add_splat(const Outline& o, Band& band) const {
     double diameter = 0;
     for (int c = 0; c < 4; ++c)
@@ -107,7 +107,8 @@ class Costs {
           diameter, glm::length(o.corner[static_cast<std::size_t>(c)] - o.corner[static_cast<std::size_t>(7 - c)]));
     glm::dvec2 centre(0);
     for (const glm::dvec2& corner : o.corner) centre += 0.125 * corner;
-    // The longest diagonal may point to the eye: no sphere is smaller than that of the box's own size there.
+    // A diagonal that points to the eye appears short. The longest projected distance of any two corners is a lower
+    // bound of the sphere's diameter.
     double longest = 0;
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < a; ++b)
@@ -157,7 +158,7 @@ class Costs {
         if (!back[a][side]) continue;
         const int u = 1 << (a + 1) % 3, v = 1 << (a + 2) % 3, first = side << a;
         std::array<int, 4> ring{first, first + u, first + u + v, first + v};
-        // The diagonal runs through the inner corner, so that both triangles have its weight.
+        // The diagonal starts at the inner corner, so that both triangles have its weight.
         const auto found = std::find_if(ring.begin(), ring.end(), inner);
         if (found != ring.end()) std::rotate(ring.begin(), found, ring.end());
         add_triangle(ring[0], ring[1], ring[2]);
@@ -179,7 +180,7 @@ class Costs {
 
   [[nodiscard]] glm::dvec3 direction(double px, double py) const {
     glm::dvec3 d = rays_.direction + px * rays_.direction_x + py * rays_.direction_y;
-    // Along an axis the slabs of the others hold all of the ray or none: a tiny slope gives that without 0 / 0.
+    // A ray parallel to a slab is entirely inside or outside; a tiny slope gives that result without 0 / 0.
     const double least = 1e-12 * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     for (int a = 0; a < 3; ++a)
       if (std::abs(d[a]) < least) d[a] = least;
@@ -195,7 +196,8 @@ class Costs {
     const double from = std::max({enter.x, enter.y, enter.z, rays_.near_depth});
     const double to = std::min({leave.x, leave.y, leave.z, rays_.far_depth});
     if (!(to > from)) return 0;
-    // k is the axis of the slabs, counted in the ray's direction; rays of a packet lie two pixels to either side.
+    // k is the axis of the slabs, counted in the ray's direction; rays of a packet are at most two pixels to either
+    // side.
     const glm::dvec3 steep = glm::abs(d);
     const int k = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
     const bool mirrored = d[k] < 0;
@@ -250,14 +252,14 @@ class Costs {
     return false;
   }
 
-  /// Cost of a unit of planar depth along a pixel's ray.
+  /// Cost per unit of planar depth along a pixel's ray.
   [[nodiscard]] double rate(double px, double py) const {
     if (!settings_.by_voxels) return space_.length_per_depth(px, py) / mean_voxel_;
     const glm::dvec3 d = glm::abs(direction(px, py));
     return d.x + d.y + d.z;
   }
 
-  /// Adds a triangle within a box's outline, `weights` at its corners and linear between.
+  /// Adds a triangle within a box's outline, with `weights` at its corners, linear in between.
   void fill(const std::array<glm::dvec2, 3>& corners, const glm::dvec3& weights, const Outline& o, Band& band) const {
     const auto& [a, b, c] = corners;
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -281,7 +283,7 @@ class Costs {
   scene::PixelView space_;
   PixelRays rays_;
   bool perspective_;
-  double mean_voxel_, map_pixel_;  // world units; the latter at depth one under perspective
+  double mean_voxel_, map_pixel_;  // world units; map_pixel_ at depth one in perspective views
 };
 
 }  // namespace

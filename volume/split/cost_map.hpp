@@ -15,56 +15,55 @@
 
 namespace tessera::volume {
 
-/// How the cost of a pixel is found: from the cells that the caster visits, or from the visible bricks behind the pixel
-/// (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 4.1).
+/// How the cost of a pixel is computed: from the cells that the caster visits, or from the visible bricks behind the
+/// pixel (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 4.1).
 enum class CostMethod {
-  visited,   ///< each ray's way through what the caster visits of it
-  accurate,  ///< each ray's way through the bricks
-  backface,  ///< back faces of bricks alone, a weight at each corner, linear between
-  splatting  ///< a sphere round each brick
+  visited,   ///< each ray's path through the cells that the caster visits
+  accurate,  ///< each ray's path through the bricks
+  backface,  ///< back faces of bricks only, with a weight at each corner, linear between corners
+  splatting  ///< a sphere around each brick
 };
 
-/// Cells of 8^3 voxels (CellRanges) and which of them the transfer function shows.
+/// Cells of 8^3 voxels (CellRanges) and their visibility under the transfer function.
 struct VisibleCells {
   scene::GridIndex cells;
-  std::span<const std::uint8_t> visible;  ///< one byte a cell
+  std::span<const std::uint8_t> visible;  ///< one byte per cell
 };
 
-/// A brick, in index space.
+/// A brick in index space.
 struct CostBox {
   glm::dvec3 low, high;
 };
 
 struct CostSettings {
   CostMethod method = CostMethod::visited;
-  double resolution = 0.5;  ///< map pixels an image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
-  /// What a stretch of ray costs: the voxels it crosses (exact integrals), or else its length (samples at steps).
+  double resolution = 0.5;  ///< map pixels per image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
+  /// The cost of a part of a ray: the voxels it crosses (exact integrals), or else its length (samples at steps).
   bool by_voxels = true;
-  /// visited, not null: samples a slab as a pilot pass has taught, and rays end where they let nothing through.
+  /// Only for `visited`. If not null: samples per slab as learned by a pilot pass, and rays end where they are opaque.
   const WorkRates* learned = nullptr;
-  double length_unit = 1;                    ///< world units, of the optical depths learned
+  double length_unit = 1;                    ///< length unit of the learned optical depths, in world units
   double most_depth = 1e9;                   ///< optical depth at which rays end
-  std::optional<scene::PixelRect> region{};  ///< map pixels; none: all
+  std::optional<scene::PixelRect> region{};  ///< in map pixels; default: all
 };
 
-/// Size of the map of an image.
 scene::ImageSize map_size(scene::ImageSize image, double resolution);
 
-/// The image pixels that the volume may cover; all of them if it reaches behind the eye.
+/// The image pixels that the volume may cover; all pixels if it extends behind the eye.
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry);
-/// The same of a part of it.
+/// The image pixels that a part of the volume may cover.
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
                            const VoxelBox& part);
 
 /// The cost of the map's pixels, in 1/64 voxels (or mean voxel sides).
 ///
-/// `visited` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
-/// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them; with what was learned, samples
-/// count instead of voxels, until the ray is dark. The others sum over `bricks`: `accurate` by the ray of each map
-/// pixel's centre; the approximations give each brick its true total by the depth of its centre: `backface` counts a
-/// corner 1 inside the brick's outline and 0.25 on it, faces cut in two triangles through the inner corner (Moloney
-/// 2008, A.4); `splatting` the chords of a sphere as wide as the brick. Bricks that reach behind the eye are done by
-/// each ray's way through them.
+/// `visited` marches the ray of each map pixel's centre like the caster: eight slabs of voxels at a time, which count
+/// if a packet of 4 x 4 pixels around the ray may meet a visible cell in them. With learned rates, samples count
+/// instead of voxels, until the ray is opaque. The other methods sum over `bricks`. `accurate` uses the ray of each map
+/// pixel's centre. The approximations give each brick its exact total for the depth of its centre: `backface` gives a
+/// corner the weight 1 inside the brick's outline and 0.25 on it, and divides faces into two triangles through the
+/// inner corner (Moloney 2008, A.4); `splatting` uses the chords of a sphere as wide as the brick. For bricks that
+/// extend behind the eye, each ray's path through them is used instead.
 ///
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,

@@ -10,13 +10,13 @@
 
 namespace tessera::volume {
 
-/// Cost of the pixels of (part of) a picture, as whole numbers so that sums do not depend on who adds them.
+/// Cost of the pixels of an image or a part of it, as integers so that sums do not depend on the order of summation.
 ///
-/// Map pixel (x, y) stands for the image's pixels round ((x + 0.5) / resolution, (y + 0.5) / resolution).
+/// Map pixel (x, y) represents the image's pixels around ((x + 0.5) / resolution, (y + 0.5) / resolution).
 struct CostMap {
-  double resolution = 1;            ///< map pixels an image pixel, along each axis
+  double resolution = 1;            ///< map pixels per image pixel along each axis
   scene::ImageSize size{0, 0};      ///< of the whole map
-  scene::PixelRect region{};        ///< the part of it that is here, map pixels
+  scene::PixelRect region{};        ///< the part of the map that is stored, in map pixels
   std::vector<std::uint32_t> cost;  ///< row by row in the region
 
   [[nodiscard]] int width() const { return region.x1 - region.x0; }
@@ -38,7 +38,8 @@ class SummedArea {
   std::vector<std::uint64_t> sums_;
 };
 
-/// A vertical edge of a rectangle: `x` pixels from the left, and `region_grain` further to the right above `step`.
+/// A vertical edge of a rectangle: at `x` pixels from the left, and `region_grain` further to the right above row
+/// `step`.
 struct SteppedEdge {
   int x, step;
 };
@@ -56,46 +57,46 @@ void each_rectangle(int y0, int y1, const SteppedEdge& left, const SteppedEdge& 
   }
 }
 
-/// A picture cut into rows of columns, one rectangle a process (Moloney, "Ray Coherence in Parallel Volume Rendering",
-/// SFU 2008, 4.2): a row may have any number of columns, so any number of processes works.
+/// An image divided into rows of columns, one rectangle per process (Moloney, "Ray Coherence in Parallel Volume
+/// Rendering", SFU 2008, 4.2). Each row may have any number of columns, so any number of processes is possible.
 struct ImageSplit {
   std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
-  std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width
-  /// Of each of these edges: above this y it lies `region_grain` pixels further to the right; a multiple of a tile's
-  /// side, or the row's upper edge. Empty: none steps.
+  std::vector<std::vector<int>> columns;  ///< for each row: edges from 0 to the width
+  /// For each of these edges: the y above which it is `region_grain` pixels further to the right; a multiple of a
+  /// tile's side, or the row's upper edge. Empty if no edge has a step.
   std::vector<std::vector<int>> steps{};
 
   [[nodiscard]] int processes() const;
-  /// The process's rectangle, without steps.
+  /// The rectangle of the process, without steps.
   [[nodiscard]] scene::PixelRect region(int process) const;
-  /// Its pixels, as rectangles from top to bottom. No two have pixels of one tile.
+  /// The pixels of the process, as rectangles from top to bottom. No two have pixels of the same tile.
   [[nodiscard]] std::vector<scene::PixelRect> parts(int process) const;
 };
 
-/// How many columns each row has, for `processes` rectangles that are not far from square.
+/// The number of columns of each row, for `processes` rectangles that are approximately square.
 std::vector<int> columns_of_rows(int processes, scene::ImageSize size);
 
-/// `area` in equal rectangles, as rows of columns: where nothing is known of the cost. Rectangles at the rim of `area`
-/// reach to the picture's.
+/// Divides `area` into equal rectangles, as rows of columns, for when no costs are known. Rectangles at the boundary of
+/// `area` extend to the image's boundary.
 ImageSplit even_split(int processes, scene::ImageSize size, const scene::PixelRect& area);
 
-/// What a process says of its part of the map: the two stages of the parallel search (Moloney 2008, Figure 4.3), in
-/// which only sums along edges travel.
+/// A process's contribution to the two stages of the parallel search (Moloney 2008, Figure 4.3), in which only sums
+/// along edges are exchanged.
 ///   first    the cost of each of its rows: the right-most column of its table
 ///   second   for each map row in which a row of rectangles begins: the cost above it of each of its columns
-/// All processes gather both and find the same edges. A split by one process is the same with one part.
+/// All processes gather both and find the same edges. A split by one process is the same with a single part.
 struct RowSums {
-  scene::PixelRect region{};        ///< of the map
-  std::vector<std::uint64_t> rows;  ///< of the region
+  scene::PixelRect region{};        ///< in map pixels
+  std::vector<std::uint64_t> rows;  ///< by row of the region
 };
 struct ColumnSums {
   scene::PixelRect region{};
-  std::vector<std::vector<std::uint64_t>> columns;  ///< of the region's columns, for each of the map rows asked for
+  std::vector<std::vector<std::uint64_t>> columns;  ///< by column of the region, for each of the requested map rows
 };
 
-/// The search for the split lines, in proportion to `weights`, one a process: how much of the work each should get.
-/// Edges may lie inside a map pixel, whose cost counts as spread evenly; they are multiples of `grain` image pixels
-/// (where the picture is large enough for that).
+/// The search for the edges, so that the costs of the processes are in proportion to `weights`. Edges may be inside a
+/// map pixel, whose cost is then assumed to be uniform. Edges are multiples of `grain` image pixels if the image is
+/// large enough.
 class SplitSearch {
  public:
   SplitSearch(scene::ImageSize image, double resolution, scene::ImageSize map, std::vector<double> weights, int grain);
@@ -116,7 +117,7 @@ class SplitSearch {
   std::vector<int> per_row_, rows_, map_rows_;
 };
 
-/// Both stages with the whole map in one place.
+/// Both stages with the whole map in one process.
 ImageSplit split(const CostMap& map, scene::ImageSize image, const std::vector<double>& weights, int grain = 1);
 
 }  // namespace tessera::volume

@@ -20,7 +20,7 @@ std::vector<std::uint64_t> WorkTally::take() {
 }
 
 void WorkRates::add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums) {
-  // Of what was known a quarter is forgotten, of two numbers in one word each by itself.
+  // Reduces the sums by a quarter; the two numbers that share a word separately.
   constexpr std::uint64_t low = 0xffffffffu;
   for (std::size_t word = 0; word < sums.size(); ++word) {
     std::uint64_t& sum = sums[word];
@@ -33,7 +33,7 @@ void WorkRates::learn(std::span<const std::uint64_t> tally) {
   struct Sums {
     double samples = 0, slabs = 0, depth = 0;
   };
-  // From cells to cubes of twice the side and so on, to one.
+  // The cells, then cubes of twice the side at each level, up to a single cube.
   struct Level {
     scene::GridIndex cells;
     std::vector<Sums> sums;
@@ -70,7 +70,7 @@ void WorkRates::learn(std::span<const std::uint64_t> tally) {
     for (std::size_t cell = 0; cell < rates.size(); ++cell) {
       const Rates& prior = l + 1 < levels.size() ? above[over(level, levels[l + 1], cell)] : above[0];
       const Sums& sums = level.sums[cell];
-      constexpr double prior_slabs = 16;  // what two rays find in a small cell
+      constexpr double prior_slabs = 16;  // about the number of slabs of two rays in a small cell
       rates[cell].samples = (sums.samples + prior_slabs * prior.samples) / (sums.slabs + prior_slabs);
       rates[cell].depth = (sums.depth + prior_slabs * prior.depth) / (sums.slabs + prior_slabs);
     }

@@ -12,11 +12,11 @@
 
 namespace tessera::volume {
 
-/// What is to be divided.
+/// The volume to be divided.
 struct ObjectSplit::Work {
   scene::GridIndex cells;
   std::span<const std::uint8_t> visible;
-  std::int64_t grain;  ///< voxels between places for planes
+  std::int64_t grain;  ///< voxels between possible planes
 
   /// Visible voxels of a box by slab of `grain` voxels along each axis.
   [[nodiscard]] std::array<std::vector<double>, 3> slabs(const VoxelBox& box) const {
@@ -59,7 +59,8 @@ struct Cut {
   std::int64_t voxel;
 };
 
-/// Where `share` of a box's work is below the plane: along the longest axis, unless another divides it clearly better.
+/// The plane below which there is about `share` of a box's work: across the longest axis, unless another axis gives a
+/// clearly better division.
 std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, const VoxelBox& box, std::int64_t grain,
                             double share) {
   std::int64_t longest = 0;
@@ -72,7 +73,7 @@ std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, con
     double below = 0;
     for (std::size_t s = 1; s < count; ++s) {
       below += slabs[a][s - 1];
-      // With nothing to see, or as much on both sides of empty slabs: by voxels.
+      // Without visible voxels, and among empty slabs: by number of voxels.
       const double by_voxels = std::abs(static_cast<double>(s) / static_cast<double>(count) - share);
       const double off = total > 0 ? std::abs(below / total - share) + 1e-3 * by_voxels : by_voxels;
       const double slender = static_cast<double>(box.high[a] - box.low[a]) / static_cast<double>(longest);
@@ -85,7 +86,7 @@ std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, con
   return best;
 }
 
-/// Bricks, or parts of them where those are few.
+/// The brick size, or a fraction of it if there are few bricks.
 std::int64_t grain_of(const scene::GridIndex& voxels, int brick_size, int processes) {
   std::int64_t grain = brick_size;
   const auto count = [&] {
@@ -110,13 +111,13 @@ ObjectSplit::ObjectSplit(const scene::GridIndex& voxels, std::span<const std::ui
   cut(work, {{0, 0, 0}, voxels}, 0, processes);
 }
 
-/// Gives processes first .. last - 1 the box. The plane's number; -1 if it is not cut.
+/// Assigns the box to processes first .. last - 1. Returns the plane's index; -1 if the box is not divided.
 int ObjectSplit::cut(const Work& work, const VoxelBox& box, int first, int last) {
   const int above = first + (last - first) / 2;
   const std::optional<Cut> where =
       last - first > 1 ? best_cut(work.slabs(box), box, work.grain, static_cast<double>(above - first) / (last - first))
                        : std::nullopt;
-  if (!where) {  // one process, or one brick: the others have nothing
+  if (!where) {  // one process, or a single brick: the other processes get empty boxes
     boxes_[static_cast<std::size_t>(first)] = box;
     return -1;
   }

@@ -11,29 +11,30 @@
 
 namespace tessera::volume {
 
-/// A volume cut into boxes of whole bricks, one a process (sort-last; Moloney, "Ray Coherence in Parallel Volume
-/// Rendering", SFU 2008, 2.3): by planes, each of which divides the processes of its box in two halves and their
-/// visible cells in the same proportion as well as bricks allow (a k-d tree). So a view sees the boxes one behind the
-/// other, whichever it is, and the cut depends on the transfer function alone.
+/// A volume divided into boxes of whole bricks, one per process (sort-last; Moloney, "Ray Coherence in Parallel Volume
+/// Rendering", SFU 2008, 2.3), by a k-d tree. Each plane divides the processes of its box into two halves, and their
+/// visible cells in the same proportion as well as bricks allow. Therefore the boxes have a visibility order in every
+/// view, and the division depends on the transfer function alone.
 class ObjectSplit {
  public:
-  /// `visible`: a byte for each cell of 8^3 voxels, as CellRanges numbers them. Planes lie at multiples of `brick_size`
-  /// voxels; of half that, a quarter and so on down to 8 where there are fewer than eight such bricks a process. Where
-  /// even those are fewer than processes, some get an empty box (low == high).
+  /// `visible`: one byte per cell of 8^3 voxels, numbered as in CellRanges. Planes are at multiples of `brick_size`
+  /// voxels, or of half that, a quarter and so on down to 8 where there are fewer than eight bricks of that size per
+  /// process. Where even those are fewer than the processes, some processes get an empty box (low == high).
   ObjectSplit(const scene::GridIndex& voxels, std::span<const std::uint8_t> visible, int brick_size, int processes);
 
-  /// Of each process.
+  /// By process.
   [[nodiscard]] const std::vector<VoxelBox>& boxes() const { return boxes_; }
 
-  /// Processes in an order in which no ray of the camera comes to one's box before it has left those of all before it.
+  /// The processes in an order in which every ray of the camera leaves the boxes of earlier ones before it enters the
+  /// boxes of later ones.
   [[nodiscard]] std::vector<int> front_to_back(const scene::GridGeometry& geometry, const scene::Camera& camera) const;
 
  private:
   struct Plane {
     std::size_t axis = 0;
-    std::int64_t voxel = 0;                  ///< first one behind the plane
-    int first = 0, above = 0, last = 0;      ///< processes first .. above - 1 are below it, above .. last - 1 above it
-    int plane_below = -1, plane_above = -1;  ///< that cut those further; -1: none
+    std::int64_t voxel = 0;                  ///< the first one behind the plane
+    int first = 0, above = 0, last = 0;      ///< processes [first, above) are below the plane, [above, last) above it
+    int plane_below = -1, plane_above = -1;  ///< planes that divide these further; -1: none
   };
   struct Work;
   int cut(const Work& work, const VoxelBox& box, int first, int last);

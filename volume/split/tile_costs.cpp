@@ -12,15 +12,15 @@
 namespace tessera::volume {
 namespace {
 
-/// Of a tile's cost, what each part of it costs anew: 0.1 to 0.25 was measured, the less the finer the pixels are.
+/// The fraction of a tile's cost that each part of it bears in full. Measured: 0.1 to 0.25, less with finer pixels.
 constexpr double shared = 0.12;
 
-/// Pixels of a square that a range has, along one axis.
+/// The overlap of a square and a range along one axis, in pixels.
 int overlap(int square, int low, int high) {
   return std::min(high, (square + 1) * TileCosts::side) - std::max(low, square * TileCosts::side);
 }
 
-/// Summed-area table of rows of `width`.
+/// Summed-area table of rows of `width` values.
 std::vector<double> summed(const std::vector<double>& values, int width) {
   const auto stride = static_cast<std::size_t>(width) + 1;
   std::vector<double> table(stride, 0.0);
@@ -48,7 +48,7 @@ TileCosts::TileCosts(const scene::Camera& camera, scene::ImageSize size, const g
 
 float TileCosts::at(double x, double y) const {
   const auto along = [](double v, int length) {
-    const double place = std::min(std::max(0.0, v / side - 0.5), length - 1.0);  // 0 of what is no number
+    const double place = std::min(std::max(0.0, v / side - 0.5), length - 1.0);  // 0 for NaN
     const int low = std::min(static_cast<int>(place), std::max(0, length - 2));
     return std::pair(low, static_cast<float>(place - low));
   };
@@ -65,7 +65,7 @@ float TileCosts::at(double x, double y) const {
 void TileCosts::turn_to(const scene::Camera& camera) {
   if (camera == camera_) return;
   const scene::PixelView next(camera, size_), last(camera_, size_);
-  // From within, the plane is kept in front of the eye, no nearer than half of the way to the middle.
+  // If the eye is inside the volume, the plane is kept in front of it, at half the distance of the middle or more.
   const glm::dvec3 to_middle = middle_ - next.position;
   const double depth = std::max(glm::dot(to_middle, next.basis.forward), 0.5 * glm::length(to_middle));
   std::vector<float> density;
@@ -102,7 +102,7 @@ void TileCosts::learn(std::span<const TileTime> times) {
          [&](std::size_t n, float covers) { of_tile += covers * density_[n], pixels += covers; });
     constexpr auto again = static_cast<float>(shared);
     const float scale = 1e3f * microseconds / std::max((1 - again) * of_part + again * of_tile, 1e-6f);
-    // A part of it evenly, so that a square that was thought to cost nothing can be found to cost something.
+    // A tenth is distributed uniformly, so that a square with zero cost can get a positive one.
     constexpr float even = 0.1f;
     const float level = even * of_tile / pixels;
     each(part, [&](std::size_t n, float covers) {

@@ -10,37 +10,39 @@
 
 namespace tessera::volume {
 
-/// What a tile of rays took of a thread, or the part of a tile that lies in a region of the picture.
+/// A thread's time for the rays of a tile, or for the part of a tile that is in a region of the image.
 struct TileTime {
   scene::PixelRect pixels;
   float microseconds;
 };
 
-/// What the pixels of a picture take, as pictures before it have taught, carried from view to view.
+/// The cost of the pixels of an image, learned from earlier images and carried from view to view.
 ///
-/// The picture is a lattice of squares of `side` pixels. A new view has each square's rays cost what the old view's
-/// rays cost that met them on the plane through the volume's middle across the new view: a pixel near or far costs what
-/// a ray does, so nothing is scaled. Then what a tile took is shared out between its squares as they were thought to
-/// cost before, which tells them apart better than one time a tile could, as the view moves on.
+/// The image is divided into squares of `side` pixels. In a new view, the rays of a square cost as much as the old
+/// view's rays through the same points of the plane that contains the volume's middle and is parallel to the new image
+/// plane. The cost of a ray does not depend on the distance of the eye, so costs are not scaled. The time of a tile is
+/// then distributed over its squares in proportion to their previous costs. This resolves the squares better than the
+/// tile's time alone, as the view changes.
 ///
-/// Whoever has a part of a tile reads all the voxels that the tile meets: a share of the tile's cost is each part's.
+/// A process with a part of a tile reads all voxels that the tile meets, so every part bears a share of the tile's
+/// cost.
 class TileCosts {
  public:
   static constexpr int side = 8;
 
-  /// Nothing is known yet: all alike. A valid camera and size; `middle` of the volume, world.
+  /// Starts with equal costs. Camera and size must be valid; `middle` of the volume is in world space.
   TileCosts(const scene::Camera& camera, scene::ImageSize size, const glm::dvec3& middle);
 
-  /// To another view of a picture of this size.
+  /// Changes to another view with the same image size.
   void turn_to(const scene::Camera& camera);
 
-  /// What this view's picture took. Every pixel is in one of `times`; those of none keep what they had.
+  /// Learns the times of this view's image. Every pixel is in at most one of `times`; pixels in none keep their cost.
   void learn(std::span<const TileTime> times);
 
   [[nodiscard]] const scene::Camera& camera() const { return camera_; }
   [[nodiscard]] scene::ImageSize size() const { return size_; }
 
-  /// Nanoseconds of a rectangle of pixels, in one process. Not after turn_to() or learn() until sum() is called.
+  /// Time of a rectangle of pixels in one process, in nanoseconds. Requires sum() after turn_to() or learn().
   [[nodiscard]] double of(const scene::PixelRect& rect) const;
   void sum();
 
@@ -50,8 +52,8 @@ class TileCosts {
   scene::Camera camera_;
   scene::ImageSize size_;
   glm::dvec3 middle_;
-  int width_, height_;                   ///< squares
-  std::vector<float> density_;           ///< nanoseconds a pixel, of a tile that one process has
+  int width_, height_;                   ///< in squares
+  std::vector<float> density_;           ///< nanoseconds per pixel, for a tile that a single process renders
   std::vector<double> squares_, tiles_;  ///< summed-area tables (Crow 1984), with a row and a column of zeros
 };
 

@@ -11,11 +11,11 @@ namespace tessera::volume {
 
 struct TilePlace {
   int x, y;            ///< the first pixel
-  std::size_t region;  ///< the one whose pixels are meant
+  std::size_t region;  ///< index of the region whose pixels are rendered
 };
 
-/// The tiles that have pixels of regions, of each region by themselves, along a curve that stays in one place for long,
-/// so that neighbours find each other's bricks.
+/// The tiles that have pixels in the regions, for each region separately, sorted along a Z-order curve so that
+/// neighbouring tiles find each other's bricks in the cache.
 std::vector<TilePlace> tiles_of(std::span<const scene::PixelRect> regions);
 
 }  // namespace tessera::volume

@@ -9,7 +9,8 @@
 namespace tessera::volume {
 namespace {
 
-/// The voxel along an axis in which a place of the grid's local frame is; beyond the ends, the voxels there.
+/// The voxel along an axis that contains a position in the grid's local frame; positions outside belong to the end
+/// voxels.
 std::int64_t voxel_at(const scene::GridGeometry& geometry, std::size_t axis, double local) {
   std::int64_t low = 0, high = geometry.points[axis] - 1;
   while (high - low > 1) {
@@ -23,8 +24,8 @@ std::int64_t voxel_at(const scene::GridGeometry& geometry, std::size_t axis, dou
 
 std::vector<VoxelBox> boxes_front_to_back(const scene::GridGeometry& geometry, const scene::GridIndex& sides,
                                           const scene::Camera& camera) {
-  // Along each axis boxes farther from the eye's come later; so does, of two boxes, the one whose steps from it are
-  // more, as a ray's way on is a step away from the eye.
+  // Boxes are sorted by their distance from the eye's box, in steps along the axes. Each box that a ray enters is a
+  // step farther from the eye's box than the one it leaves.
   const glm::dmat3 to_local = scene::world_to_local(geometry);
   const glm::dvec3 eye = to_local * (camera.position - geometry.origin);
   const glm::dvec3 forward = to_local * scene::view_basis(camera).forward;

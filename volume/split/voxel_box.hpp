@@ -16,8 +16,8 @@ struct VoxelBox {
   [[nodiscard]] static VoxelBox all_of(const scene::GridGeometry& geometry) { return {{0, 0, 0}, geometry.voxels()}; }
 };
 
-/// The volume in boxes of `sides` voxels (less at the high ends), such that no ray of the camera comes to one before it
-/// has left all that lie in front of it. Each side is 1 or more.
+/// Divides the volume into boxes of `sides` voxels (fewer at the high ends), in an order in which every ray of the
+/// camera leaves all boxes in front of a box before it enters that box. Each side is at least 1.
 std::vector<VoxelBox> boxes_front_to_back(const scene::GridGeometry& geometry, const scene::GridIndex& sides,
                                           const scene::Camera& camera);
 
