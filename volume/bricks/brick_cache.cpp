@@ -40,8 +40,8 @@ std::uint64_t BrickCache::bytes_of(const BrickLayout& layout, std::size_t brick,
 
 std::uint64_t BrickCache::bytes_of(std::size_t brick) const { return bytes_of(layout_, brick, source_.grid().type); }
 
-/// Bytes that are asked of the heap: bricks at the ends of axes that are hardly smaller get as much as the others. A
-/// gap that such a brick leaves would be too small for any other.
+/// Bytes to allocate for a brick: slightly smaller bricks at the ends of the axes get as much as the others, because
+/// the gap that they leave in the heap would be too small for others.
 std::uint64_t BrickCache::room_for(std::uint64_t bytes) const {
   const std::uint64_t largest = bytes_of(0);
   return holds_all_ || bytes < largest - largest / 8 ? bytes : largest;
@@ -56,8 +56,8 @@ void BrickCache::forget(std::size_t brick) {
   ++counts_.evictions;
 }
 
-/// The first to go of those that nobody holds and, by proximity, that are farther than `beyond`; or none, the number of
-/// bricks.
+/// The next brick to evict: not in use and, with the proximity policy, farther than `beyond`. The number of bricks if
+/// there is none.
 std::size_t BrickCache::victim(float beyond) const {
   if (policy_ == CachePolicy::proximity) {
     for (auto it = by_distance_.rbegin(); it != by_distance_.rend() && it->first > beyond; ++it)
@@ -69,8 +69,8 @@ std::size_t BrickCache::victim(float beyond) const {
   return entries_.size();
 }
 
-/// Throws bricks out until `bytes` more fit; false if there are too few to go. A thrown-out brick's memory of the right
-/// size comes back as `buffer`, so that the heap does not grow by its gaps.
+/// Evicts bricks until `bytes` more fit; returns false if it cannot evict enough. An evicted brick's memory of suitable
+/// size is returned in `buffer`, so that the heap does not grow by its gaps.
 bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer) {
   while (counts_.bytes + bytes > budget_) {
     const std::size_t goes = victim(beyond);
@@ -84,7 +84,7 @@ bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<st
   return true;
 }
 
-/// Of any brick that is not held. Looks at the clock only where something has to go.
+/// Evicts any bricks that are not in use. Reads the clock only if it has to evict.
 bool BrickCache::make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer) {
   if (counts_.bytes + bytes <= budget_) return true;
   const auto begin = Clock::now();
@@ -93,7 +93,7 @@ bool BrickCache::make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[
   return fits;
 }
 
-/// Reads a brick that there is room for, with the lock released meanwhile; then nobody holds it yet.
+/// Reads a brick for which there is room, releasing the lock meanwhile. Afterwards the brick is not in use yet.
 void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bool ahead,
                       std::unique_lock<std::mutex>& lock, scene::Trace* trace) {
   Entry& entry = entries_[brick];
@@ -135,7 +135,7 @@ void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bo
 const std::byte* BrickCache::acquire(std::size_t brick, scene::Trace* trace) {
   Entry& entry = entries_[brick];
   if (holds_all_) {
-    // Nothing is ever thrown out: what is ready stays, and needs no holding.
+    // No brick is ever evicted: what is ready remains so, and use counts are not needed.
     if (const std::byte* ready = entry.ready.load(std::memory_order_acquire)) {
       unlocked_hits_.fetch_add(1, std::memory_order_relaxed);
       return ready;

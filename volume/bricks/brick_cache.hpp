@@ -19,18 +19,18 @@
 
 namespace tessera::volume {
 
-/// Bricks in memory, loaded from the source as they are asked for, within a budget of bytes (Moloney, "Ray Coherence in
-/// Parallel Volume Rendering", SFU 2008, 3.3).
+/// Bricks in memory, loaded from the source on request, within a budget of bytes (Moloney, "Ray Coherence in Parallel
+/// Volume Rendering", SFU 2008, 3.3).
 ///
-/// Samples  as stored; i fastest, rows and slices as far apart as BrickLayout::room() says.
-/// Threads  any number. A thread holds at most one brick at a time: acquire() may wait until another lets go of its
-///          own.
+/// Samples   As stored; i varies fastest, and BrickLayout::room() determines the strides of rows and slices.
+/// Threads   Any number. A thread may hold at most one brick at a time: acquire() may wait until another thread
+///           releases its brick.
 class BrickCache {
  public:
   struct Counts {
     std::uint64_t hits = 0, loads = 0, evictions = 0, bytes_loaded = 0, bytes = 0, peak_bytes = 0;
-    std::uint64_t preloads = 0;               ///< ahead of their use, not among `loads`
-    std::uint64_t load_ns = 0, evict_ns = 0;  ///< of acquire(): all of its reading, and making room
+    std::uint64_t preloads = 0;               ///< loaded ahead of their use, not included in `loads`
+    std::uint64_t load_ns = 0, evict_ns = 0;  ///< acquire() only: reading, and making room
   };
   enum class Ahead { loaded, was_there, no_room };
 
@@ -38,26 +38,26 @@ class BrickCache {
   BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
              CachePolicy policy);
 
-  /// A brick's samples, kept until release(). Throws what the source's read() throws.
+  /// A brick's samples, valid until release(). Throws what the source's read() throws.
   const std::byte* acquire(std::size_t brick, scene::Trace* trace);
   void release(std::size_t brick);
 
-  /// proximity: distances by brick number that the next evictions go by, the largest first. A brick no farther than
-  /// `in_use` may be needed at any time, and makes no room for what is loaded ahead.
+  /// proximity: distances by brick number, which determine evictions, the largest first. A brick no farther than
+  /// `in_use` may be needed at any time, and is not evicted for preloading.
   void set_distances(std::vector<float> distances, float in_use = 0);
 
-  /// proximity: loads a brick that nobody has asked for yet, unless that would throw out one that is no farther, or one
-  /// in use; with `evicts` false, any. On any thread; waits while acquire() reads on another, which goes first. Throws
-  /// as acquire() does.
+  /// proximity: loads a brick that has not been requested yet, unless this would evict one that is not farther, or one
+  /// in use; with `evicts` false, unless it would evict any. On any thread. Waits while acquire() reads on other
+  /// threads, which have priority. Throws as acquire() does.
   Ahead preload(std::size_t brick, bool evicts, scene::Trace* trace);
 
-  /// Of the samples of a brick.
+  /// Bytes of the samples of a brick.
   static std::uint64_t bytes_of(const BrickLayout& layout, std::size_t brick, scene::SampleType type);
-  /// Of memory for where the bricks are, held or not, their distances, and which of them a frame shows.
+  /// Bytes of the table of all bricks, loaded or not, their distances, and their visibility in a frame.
   static std::uint64_t bytes_of_table(const BrickLayout& layout) {
     return layout.count() * (sizeof(Entry) + 2 * sizeof(float) + 2);
   }
-  /// Of memory for a brick's places in the orders of use and distance, and what the heap adds to it.
+  /// Bytes of a brick's nodes in the orders of use and distance, and of the heap's overhead.
   static constexpr std::uint64_t bytes_beside_brick = 128;
 
   [[nodiscard]] Counts counts() const;

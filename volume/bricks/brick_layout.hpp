@@ -11,12 +11,12 @@
 
 namespace tessera::volume {
 
-/// How a volume is cut into bricks of size^3 voxels (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008,
-/// 3.2). Bricks at the high ends hold what is left.
+/// The division of a volume into bricks of size^3 voxels (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU
+/// 2008, 3.2). Bricks at the high ends have the remaining voxels.
 ///
-/// Numbers  brick (a, b, c) is number a + bricks[0] * (b + bricks[1] * c).
-/// Samples  point data: voxels of a brick and one sample more along each axis, which it shares with its neighbour. Cell
-///          data: a sample for each voxel, none shared.
+/// Numbers   Brick (a, b, c) has the number a + bricks[0] * (b + bricks[1] * c).
+/// Samples   Point data: the voxels of a brick and one more sample along each axis, which it shares with its neighbour.
+///           Cell data: one sample per voxel, none shared.
 struct BrickLayout {
   scene::GridIndex samples, voxels, bricks;
   std::int64_t size;
@@ -40,7 +40,7 @@ struct BrickLayout {
     const auto n = static_cast<std::int64_t>(brick);
     return {n % bricks[0], n / bricks[0] % bricks[1], n / bricks[0] / bricks[1]};
   }
-  /// The brick along `axis` that holds a sample, its lower one if it is shared.
+  /// The brick along `axis` that contains a sample, for a shared sample the upper one.
   [[nodiscard]] std::int64_t brick_of(std::size_t axis, std::int64_t sample) const {
     return std::min(sample / size, bricks[axis] - 1);
   }
@@ -52,7 +52,7 @@ struct BrickLayout {
     }
     return box;
   }
-  /// Samples along each axis that a brick's memory has room for.
+  /// Capacity of a brick's memory in samples along each axis.
   [[nodiscard]] scene::GridIndex room(const scene::GridIndex& b) const {
     if (edge == EdgeBricks::fixed) return {size + shared, size + shared, size + shared};
     const scene::SampleBox samples_box = box(b);

@@ -17,7 +17,8 @@
 namespace tessera::volume {
 namespace {
 
-/// Voxels, in whole cells, that are read at once: about 64^3, whole rows of what is stored slice by slice.
+/// Size in voxels, a multiple of cells, of the blocks that are read at once: about 64^3; whole rows if the source is
+/// stored slice by slice.
 scene::GridIndex scan_block_size(const scene::SampleSource& source) {
   constexpr std::int64_t cell = CellRanges::side, cube = 64, most = cube * cube * cube;
   if (source.storage_block()[2] > 1) return {cube, cube, cube};
@@ -28,7 +29,7 @@ scene::GridIndex scan_block_size(const scene::SampleSource& source) {
   return {width, height, most / (width * height) / cell * cell};
 }
 
-/// Rounded outwards, so that a range in floats holds the doubles' one.
+/// Rounded outwards, so that a range of floats contains the range of doubles.
 float rounded_down(double x) {
   const auto f = static_cast<float>(x);
   return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
@@ -38,13 +39,13 @@ float rounded_up(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// What a block adds to the scan of all.
+/// A block's contribution to the scan.
 struct BlockTotals {
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   std::uint64_t blanks = 0;
 };
 
-/// Voxels from the first to a block's size on, or to the scan's last.
+/// Scans the voxels of a block that begins at `first_voxel`, up to the last layer of the scan.
 template <class T>
 BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel,
                        const scene::GridIndex& size, CellScan& scan) {
@@ -82,7 +83,8 @@ BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex
               high = finite && row[i] > high ? row[i] : high;
             }
             if (!blank) continue;
-            // A blank counts in the cell that it is the lowest corner of, or in the last one.
+            // A blank on the boundary of two cells counts in the upper one; on the volume's upper boundary, in the last
+            // one.
             const auto owned = [&](std::int64_t index, std::int64_t cell, std::size_t axis) {
               return index < (cell + 1) * side || index == samples[axis] - 1;
             };
@@ -115,7 +117,7 @@ CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::
   scan.low.resize(static_cast<std::size_t>(cells[0] * cells[1] * (last - first)));
   scan.high.resize(scan.low.size());
   const scene::GridIndex size = scan_block_size(source);
-  const std::int64_t layers = size[2] / CellRanges::side;  // of cells in a block
+  const std::int64_t layers = size[2] / CellRanges::side;  // layers of cells in a block
   const scene::GridIndex blocks{(voxels[0] + size[0] - 1) / size[0], (voxels[1] + size[1] - 1) / size[1],
                                 (last - first + layers - 1) / layers};
   std::mutex mutex;
@@ -148,7 +150,7 @@ CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
   }
   lanes = LaneSamples(grid, range);
   if (range.empty()) return;
-  // Floats of doubles are rounded outwards, by much where all values are but last places apart.
+  // Floats of doubles were rounded outwards, which is much if all values differ only in their last places.
   const float one = lanes.lane(whole.lowest), other = lanes.lane(whole.highest);
   const float least = std::min(one, other), most = std::max(one, other);
   for (std::size_t cell = 0; cell < low.size(); ++cell) {
@@ -161,7 +163,7 @@ CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
 
 namespace {
 
-/// Intervals of the table that show anything, counted from the lowest: those before each.
+/// For each interval of the table, the number of visible intervals below it.
 std::vector<std::size_t> shown_intervals(const integrals::LaneTable& table) {
   using integrals::LaneTable;
   std::vector<std::size_t> shown_before(table.knot_count + 2, 0);
@@ -195,11 +197,11 @@ bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table) {
 
 namespace {
 
-/// One byte an interval of lane scalars; none of low > high.
+/// One byte per range of lane scalars; 0 if low > high.
 std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const std::vector<float>& high,
                                             bool whole_numbers, const integrals::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
-  // Rounding may have moved values and steps, or knots, across each other: by two places of a float and a unit.
+  // Rounding may have exchanged the order of values and steps, or knots: by two last places of a float and a unit.
   const auto uncertain = [&](std::size_t edge) {
     return table.is_moved[edge] != 0 || (table.has_steps && !whole_numbers);
   };
@@ -222,7 +224,7 @@ std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const
   return visible;
 }
 
-/// Each cell's value becomes the `best` of those up to `radius` cells away along an axis.
+/// Replaces each cell's value by the `best` of the values up to `radius` cells away along an axis.
 template <class Best>
 void spread(const scene::GridIndex& cells, std::size_t axis, std::int64_t radius, const Best& best,
             std::vector<float>& values) {
@@ -262,13 +264,13 @@ std::vector<std::uint8_t> visible_to_steps(const CellRanges& ranges, const integ
   }
   for (float& value : low) value -= margin;
   for (float& value : high) value += margin;
-  // Between knots and values whole numbers need no care, but these are widened.
+  // Exact lane scalars would need no tolerance, but these ranges have been widened.
   return visible_intervals(low, high, false, table);
 }
 
 namespace {
 
-/// The cells, first to last along each axis, that hold voxels of a brick.
+/// The first and last cell, along each axis, with voxels of a brick.
 std::array<scene::GridIndex, 2> cells_of(const BrickLayout& layout, std::size_t brick) {
   const scene::GridIndex place = layout.place(brick);
   std::array<scene::GridIndex, 2> cells;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples from bricks into a SlabBlock, as lane scalars; included once per instruction set.
+// Copies samples from bricks into a SlabBlock, as lane scalars. Included once per instruction set (Highway's include
+// guard idiom).
 //
-// What      A block has the slices of a chunk that a tile's rays meet, along the rays' axes; bricks are native boxes.
-// How       Cells of 8^3 voxels that the transfer function hides are not read: their samples become the cell's smallest
-//           value, which the function hides as well, or blank if the volume has blanks. Of the others rows of samples
-//           are converted a vector at a time.
-// Accuracy  LaneSamples::lane(), rounded to float; what that leaves off goes to SlabBlock::rest where gradients need
-//           it.
-// Bits      Whether a sample is read depends on cells alone, not on bricks, and conversion is LaneSamples::lane() to
-//           the bit: blocks are alike for any brick size.
+// What      A block has the slices of a chunk that a tile's rays meet, along the rays' axes; bricks are boxes along the
+//           volume's axes ("native" below).
+// How       Cells of 8^3 voxels that are invisible under the transfer function are not read: their samples are replaced
+//           by the cell's smallest value, which is invisible too, or by blanks if the volume has blanks. Rows of
+//           samples of the other cells are converted a vector at a time.
+// Accuracy  LaneSamples::lane(), rounded to float; SlabBlock::rest keeps the rounding error where gradients need it.
+// Bits      Whether a sample is read depends on cells alone, not on bricks, and conversion gives the bits of
+//           LaneSamples::lane(). Therefore blocks are the same for any brick size.
 // Ends      Blanks are NaN. Columns and rows beyond the box repeat its last ones.
 
 #if defined(TESSERA_VOLUME_FILL_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -31,7 +32,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
-/// Whether some cell that the transfer function shows holds one of the voxels low <= (i, j, k) <= high.
+/// Whether a visible cell contains one of the voxels low <= (i, j, k) <= high.
 HWY_INLINE bool any_visible(const FrameView& frame, const std::int64_t (&low)[3], const std::int64_t (&high)[3]) {
   const scene::GridIndex& cells = frame.ranges->cells;
   constexpr std::int64_t side = CellRanges::side;
@@ -63,15 +64,15 @@ HWY_INLINE hn::Vec<DD> load_doubles(const T* p) {
   }
 }
 
-/// LaneSamples::lane() of `count` samples, to the bit, and what of them it rounds off, unless `rest` is null. So many
-/// as `readable` from `from` on may be read, and as many floats as a vector holds from `to` on be written over with
-/// what they hold.
+/// Writes LaneSamples::lane() of `count` samples, to the bit, and the rounding error of each unless `rest` is null.
+/// `readable` samples may be read from `from` on. Up to a vector of floats from `to` on may be rewritten with unchanged
+/// values.
 template <class T>
 HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable, const LaneSamples& lanes, float* to,
                         float* rest) {
   std::int64_t i = 0;
   if constexpr (std::is_same_v<T, float> || sizeof(T) <= 2) {
-    // A power of two and no shift: single precision rounds the same.
+    // With a power of two and no shift, single precision rounds alike.
     if (lanes.scales_floats && rest == nullptr) {
       const hn::ScalableTag<float> df;
       const auto scale = Set(df, static_cast<float>(lanes.factor));
@@ -80,7 +81,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
         if constexpr (std::is_same_v<T, float>) {
           const auto sample = LoadU(df, from + at);
           const auto lane = sample * scale;
-          return (lanes.whole ? Round(lane) : lane) + Sub(sample, sample);  // NaN where it is not finite
+          return (lanes.whole ? Round(lane) : lane) + Sub(sample, sample);  // NaN if the sample is not finite
         } else {
           const hn::RebindToSigned<decltype(df)> di;
           const auto sample = ConvertTo(df, PromoteTo(di, LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
@@ -120,7 +121,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
   for (std::int64_t l = 0; rest != nullptr && l < n && i + l < count; ++l) rest[i + l] = out_rest[l];
 }
 
-/// Calls f with a number of the samples' type.
+/// Calls f with a value of the samples' type.
 template <class F>
 HWY_INLINE void with_type(scene::SampleType type, const F& f) {
   switch (type) {
@@ -143,7 +144,7 @@ HWY_INLINE void with_type(scene::SampleType type, const F& f) {
   }
 }
 
-/// Native boxes and where their samples go in the block.
+/// Maps native boxes to positions in the block.
 struct Target {
   const FrameView& frame;
   const RayAxes axes;
@@ -151,14 +152,14 @@ struct Target {
   std::int64_t first_k;  ///< of slice 0
   int slices;
 
-  /// Slice of a lattice plane along the k axis.
+  /// The slice of a lattice plane along the k axis.
   HWY_INLINE int slice_of(std::int64_t native_k) const {
     const std::int64_t last = frame.samples[static_cast<std::size_t>(axes.k)] - 1;
     return static_cast<int>((axes.mirrored ? last - native_k : native_k) - first_k);
   }
 
-  /// Calls put(x, y, z, count, to) for every row of samples of the native box [low, high] that the block holds, slice
-  /// by slice; not for the x axis as k.
+  /// Calls put(x, y, z, count, to) for every row of samples of the native box [low, high] that is in the block, slice
+  /// by slice. Not for rays whose k axis is x.
   template <class Put>
   HWY_INLINE void rows_in(const std::int64_t (&low)[3], const std::int64_t (&high)[3], const Put& put) const {
     const auto ka = static_cast<std::size_t>(axes.k), ja = static_cast<std::size_t>(axes.j);
@@ -176,7 +177,7 @@ struct Target {
         put(x_0, axes.k == 1 ? k : j, axes.k == 1 ? j : k, x_1 - x_0 + 1, to);
     }
   }
-  /// Whether rows_in() has any.
+  /// Whether rows_in() would find any row.
   HWY_INLINE bool any_in(const std::int64_t (&low)[3], const std::int64_t (&high)[3]) const {
     const auto ka = static_cast<std::size_t>(axes.k), ja = static_cast<std::size_t>(axes.j);
     for (std::int64_t k = low[ka]; k <= high[ka]; ++k) {
@@ -190,8 +191,8 @@ struct Target {
     return false;
   }
 
-  /// Calls put(x_low, x_high, to, stride) for the samples of a native row that the block holds: sample x goes to
-  /// to[(x - x_low) * stride]. For the x axis as k, the stride is not constant: `put` then gets samples one by one.
+  /// Calls put(x_low, x_high, to) for the samples x_low..x_high of a native row that are in the block and contiguous
+  /// there, beginning at `to`. If the k axis is x they are not contiguous, and `put` is called for each sample.
   template <class Put>
   HWY_INLINE void row(std::int64_t y, std::int64_t z, std::int64_t x_low, std::int64_t x_high, const Put& put) const {
     if (axes.k != 0) {
@@ -214,7 +215,7 @@ struct Target {
   }
 };
 
-/// One block being filled: the samples it takes, and whether the transfer function hides some of them.
+/// The filling of one block: the samples it needs, and whether some of them are hidden.
 class BlockFill {
  public:
   HWY_INLINE BlockFill(const FrameView& frame, const RayAxes& axes, const ChunkBox& box, SlabBlock& block)
@@ -241,13 +242,14 @@ class BlockFill {
     some_hidden_ = any_hidden();
   }
 
-  /// Gives what is hidden its cells' smallest values.
+  /// Replaces the samples of all cells by the cells' smallest values, if some cells are hidden.
   HWY_INLINE void fill_hidden() const {
     if (!some_hidden_) return;
     const scene::GridIndex& cells = frame_.ranges->cells;
     const auto ia = static_cast<std::size_t>(axes_.i), ja = static_cast<std::size_t>(axes_.j),
                ka = static_cast<std::size_t>(axes_.k);
-    // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
+    // Values between those of two hidden cells may be visible. If the volume has blanks, hidden samples become blank
+    // instead.
     const bool has_blanks = frame_.ranges->range.blanks > 0;
     const std::int64_t stride[3] = {1, cells[0], cells[0] * cells[1]};
     for (int n = box_.first_slab; n < slices_; ++n) {
@@ -270,12 +272,12 @@ class BlockFill {
     }
   }
 
-  /// Takes what is seen from the bricks of the box.
+  /// Copies the visible samples from the bricks of the box.
   HWY_INLINE void take_bricks(std::vector<float>& row_memory) const {
     const BrickLayout& layout = frame_.bricks->layout();
     scene::GridIndex first, last;
     for (std::size_t a = 0; a < 3; ++a) {
-      // A sample that two bricks share is taken from either; the lower one may be the only one that is seen.
+      // A sample that two bricks share is taken from either; the lower one may be the only visible one.
       first[a] =
           std::max(layout.brick_of(a, std::max<std::int64_t>(0, low_[a] - shared_)), layout.brick_of(a, box_.low[a]));
       last[a] = std::min(layout.brick_of(a, high_[a]), layout.brick_of(a, box_.high[a] - 1));
@@ -292,7 +294,7 @@ class BlockFill {
         }
   }
 
-  /// Columns and rows beyond the box repeat its last ones.
+  /// Fills columns and rows beyond the box with its last ones.
   HWY_INLINE void repeat_last() const {
     for (int n = box_.first_slab; n < slices_; ++n) {
       const std::int64_t columns = columns_of(n), rows = rows_of(n);
@@ -310,7 +312,7 @@ class BlockFill {
  private:
   static constexpr std::int64_t side = CellRanges::side;
 
-  /// Columns and rows of a slice that are the box's own.
+  /// The number of columns and rows of a slice that are inside the box.
   [[nodiscard]] HWY_INLINE std::int64_t columns_of(int n) const {
     return std::min<std::int64_t>(block_.pitch, box_.i_last + 1 + shared_ - block_.low_i[static_cast<std::size_t>(n)]);
   }
@@ -321,7 +323,7 @@ class BlockFill {
   [[nodiscard]] HWY_INLINE std::int64_t cell_of(std::size_t axis, std::int64_t sample) const {
     return std::min(sample / side, frame_.ranges->cells[axis] - 1);
   }
-  /// Whether a row of samples sees a cell along x: its own and, on a shared plane, the cell before it.
+  /// Whether cell `a` along x is visible in the row of samples (y, z). A row on a plane between cells belongs to both.
   [[nodiscard]] HWY_INLINE bool seen(std::int64_t a, std::int64_t y, std::int64_t z) const {
     const scene::GridIndex& cells = frame_.ranges->cells;
     const std::int64_t b = cell_of(1, y), c = cell_of(2, z);
@@ -341,7 +343,7 @@ class BlockFill {
     return false;
   }
 
-  /// The block's samples in a brick.
+  /// The part of the block's samples that is in a brick.
   HWY_INLINE void part_in(const scene::SampleBox& brick, std::int64_t (&from)[3], std::int64_t (&to)[3]) const {
     for (std::size_t a = 0; a < 3; ++a) {
       from[a] = std::max(low_[a], brick.low[a]);
@@ -349,7 +351,7 @@ class BlockFill {
     }
   }
 
-  /// A brick none of whose cells is hidden; not for the x axis as k.
+  /// Copies from a brick without hidden cells. Not for rays whose k axis is x.
   HWY_INLINE void take_all_of(const scene::GridIndex& place) const {
     const BrickLayout& layout = frame_.bricks->layout();
     const scene::SampleBox brick = layout.box(place);
@@ -371,7 +373,7 @@ class BlockFill {
     frame_.bricks->release(layout.number(place));
   }
 
-  /// Of a brick's samples those that are seen. It is not acquired if none is.
+  /// Copies a brick's visible samples. The brick is not acquired if there are none.
   HWY_INLINE void take_seen_of(const scene::GridIndex& place, std::vector<float>& row_memory) const {
     const BrickLayout& layout = frame_.bricks->layout();
     const scene::SampleBox brick = layout.box(place);
@@ -379,7 +381,7 @@ class BlockFill {
     std::int64_t from[3], to[3];
     part_in(brick, from, to);
     const std::byte* bytes = nullptr;
-    // Samples [first, first + count) of the brick.
+    // Converts samples [first, first + count) of the brick.
     const auto convert_some = [&](std::int64_t first, std::int64_t count, float* out, float* rest) HWY_ATTR {
       with_type(frame_.bricks->source().grid().type, [&](auto kind) HWY_ATTR {
         using T = decltype(kind);
@@ -391,7 +393,7 @@ class BlockFill {
       for (std::int64_t y = from[1]; y <= to[1]; ++y) {
         std::int64_t x = from[0];
         while (x <= to[0]) {
-          // A run of samples that belong to seen cells: [8a, 8a + 8] each.
+          // A run of samples that belong to visible cells: [8a, 8a + 8] each.
           std::int64_t end = to[0];
           if (some_hidden_ && !next_run(y, z, to[0], x, end)) continue;
           if (bytes == nullptr) bytes = frame_.bricks->acquire(layout.number(place), frame_.trace);
@@ -416,7 +418,7 @@ class BlockFill {
     if (bytes != nullptr) frame_.bricks->release(layout.number(place));
   }
 
-  /// Whether the row's sample x is seen: then [x, end] are; else x becomes the next that may be.
+  /// Whether the row's sample x is visible: then the samples [x, end] are. Otherwise x advances to the next candidate.
   HWY_INLINE bool next_run(std::int64_t y, std::int64_t z, std::int64_t last, std::int64_t& x,
                            std::int64_t& end) const {
     const std::int64_t a = cell_of(0, x), cells_x = frame_.ranges->cells[0];
@@ -436,15 +438,15 @@ class BlockFill {
   const std::int64_t shared_;
   const int slices_;
   const Target target_;
-  std::int64_t low_[3], high_[3];        ///< samples that the block takes, the native box round all slices
+  std::int64_t low_[3], high_[3];        ///< samples that the block takes: the native box around all slices
   std::int64_t first_cell_, last_cell_;  ///< along x
   bool some_hidden_;
 };
 
 }  // namespace fill
 
-/// Fills the block, whose slabs and slices have been laid out, with the slices of a box of voxels. Nothing is read but
-/// bricks that hold voxels of the box.
+/// Fills a block whose slabs and slices have been laid out with the samples of a box of voxels. Reads only bricks with
+/// voxels of the box.
 HWY_NOINLINE inline void fill_block(const FrameView& frame, const RayAxes& axes, const ChunkBox& box,
                                     std::vector<float>& row_memory, SlabBlock& block) {
   const fill::BlockFill filling(frame, axes, box, block);

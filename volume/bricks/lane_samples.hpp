@@ -9,24 +9,27 @@
 
 namespace tessera::volume {
 
-/// From stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * (lift * sample) +
-/// term).
+/// The map from stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * (lift *
+/// sample) + term).
 ///
-/// Unit    2^-29 of the largest distance between the origin and a value: products of few differences stay finite.
-/// Origin  zero, if the range holds or nearly holds it, so that float samples keep their bits; else the range's middle.
-/// Lift    a power of two, 1 but for values near the smallest of doubles, of which a unit's inverse would be infinite.
-/// One     value only: it is the origin, and its last place many units, so that all but the nearest knots are out of
-///         reach, where the function's values beside it stand for them.
-/// Exact   a lane is (value - origin) / unit without rounding: its side of a step is the value's. Of floats only where
-///         they keep what is less than a unit (`whole` is off).
-/// Blank   a sample that is not finite gives NaN.
+/// Unit      2^-29 of a power of two above the largest distance between the origin and a value: products of few
+///           differences remain finite.
+/// Origin    Zero if the range contains or almost contains it, so that float samples keep their bits; otherwise the
+///           middle of the range.
+/// Lift      A power of two, 1 except for values near the smallest doubles, where the inverse of the unit would be
+///           infinite.
+/// One       If all values are equal, the value is the origin, and its last place many units. Then all but the nearest
+///           knots are out of range, and are replaced by the function's values near the origin.
+/// Exact     A lane is (value - origin) / unit without rounding, so it is on the same side of a step as the value. True
+///           for float samples only if lanes keep fractions of a unit (`whole` is false).
+/// Blank     A sample that is not finite becomes NaN.
 struct LaneSamples {
   double origin = 0, unit = 1;
   double factor = 1, term = 0, lift = 1;
-  bool scales_floats = true;   ///< the factor is a power of two that floats hold, the term zero
-  bool whole = true;           ///< lanes are rounded to whole numbers
+  bool scales_floats = true;   ///< the factor is a power of two that floats can represent, and the term zero
+  bool whole = true;           ///< lanes are rounded to integers
   bool exact = false;          ///< see above
-  bool whole_numbers = false;  ///< lanes are exact and whole whatever `whole` says
+  bool whole_numbers = false;  ///< lanes are exact integers regardless of `whole`
 
   LaneSamples() = default;
   LaneSamples(const scene::Grid& grid, const scene::ValueRange& range) {
@@ -56,8 +59,8 @@ struct LaneSamples {
   }
 
  private:
-  /// Whether floats hold all lanes: floats as they stand, and whole numbers of at most 23 bits. (Floats about a middle
-  /// are multiples of 2^-24 of it.)
+  /// Whether floats represent all lanes exactly: float samples without scale and shift, and integers of at most 23
+  /// bits. (Floats about a middle are multiples of 2^-24 of it.)
   static bool is_exact(const scene::Grid& grid, double largest) {
     if (grid.type == scene::SampleType::float32) return grid.scale == 1 && grid.shift == 0;
     return !scene::is_float(grid.type) && grid.scale == std::nearbyint(grid.scale) &&

@@ -16,14 +16,15 @@
 namespace tessera::volume {
 namespace {
 
-/// What rays of a region take their samples with: all of each tile that it has pixels of, beyond the picture too.
+/// The pixels whose rays determine the samples of a region: all of each tile with pixels in the region, even outside
+/// the image.
 scene::PixelRect whole_tiles(const scene::PixelRect& region) {
   constexpr int side = TileRays::side;
   const auto up = [](int edge) { return (edge + side - 1) / side * side; };
   return {region.x0 / side * side, region.y0 / side * side, up(region.x1), up(region.y1)};
 }
 
-/// World units: rows of a tile's samples are eight voxels long at least, whatever its rays take
+/// World units: rows of a tile's samples are at least eight voxels long, even if its rays need fewer
 /// (volume/bricks/slab_block.hpp).
 float row_width(const scene::GridGeometry& geometry) {
   double widest = 0;
@@ -58,7 +59,7 @@ void LookAhead::begin(const scene::Camera& camera, scene::ImageSize size, const 
   std::vector<float> distances = outside_now_;
   if (limit_ > 0) {
     outside_next_ = frustum_distances(last_ ? next_view(*last_, camera) : camera, size, tiles, geometry, layout);
-    // What the next view needs stays too, but after all that this one may need, which has 0 or less.
+    // Bricks of the next view are kept too, but are evicted before any that the current view may need (0 or less).
     constexpr float after_all_now = std::numeric_limits<float>::min();
     for (std::size_t brick = 0; brick < distances.size(); ++brick)
       distances[brick] = std::min(distances[brick], std::max(after_all_now, outside_next_[brick]));
@@ -102,7 +103,7 @@ void LookAhead::work() {
     if (ended_) return;
     const Planned next = planned_.front();
     planned_.pop_front();
-    // Taken before it is read: a frame that begins meanwhile has a limit of its own.
+    // Subtracted before reading, because a frame that begins meanwhile resets the limit.
     --left_;
     lock.unlock();
     auto outcome = BrickCache::Ahead::no_room;

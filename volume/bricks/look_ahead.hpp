@@ -16,34 +16,34 @@
 
 namespace tessera::volume {
 
-/// What the proximity cache goes by, and the bricks that are loaded ahead for the next frame: by the view that follows
-/// if the camera goes on as it did (view_motion.hpp; Moloney, "Ray Coherence in Parallel Volume Rendering", SFU
-/// 2008, 3.3 and 7.1, who has it as an outlook).
+/// Computes the distances for the proximity cache, and preloads bricks for the next frame: those of the view that
+/// follows if the camera continues its motion (view_motion.hpp; Moloney, "Ray Coherence in Parallel Volume Rendering",
+/// SFU 2008, 3.3 and 7.1, where it is future work).
 ///
-/// Threads  one of its own, from the first brick on, which goes on from frame to frame: while rays of one are cast the
-///          bricks of the next are read, behind those that rays wait for. What the source throws is dropped: the frame
-///          that asks for the brick gets it.
-/// Bits     none depend on it.
+/// Threads   One thread, started with the first brick to preload and kept between frames. It reads bricks of the next
+///           frame while rays of the current one are cast, but gives way to reads that rays wait for. Exceptions of the
+///           source are dropped; the frame that requests the brick gets them.
+/// Bits      Images do not depend on it.
 class LookAhead {
  public:
-  /// At most `limit` bricks a frame; 0: distances alone. `bricks` and `trace` must outlive it.
+  /// Preloads at most `limit` bricks per frame; 0: only computes distances. `bricks` and `trace` must outlive it.
   LookAhead(BrickCache& bricks, int limit, scene::Trace* trace);
   ~LookAhead();
   LookAhead(const LookAhead&) = delete;
   LookAhead& operator=(const LookAhead&) = delete;
 
-  /// A frame of a region begins: what was planned for it and is not there yet is dropped.
+  /// Begins a frame of a region: bricks planned for it that are not loaded yet are dropped.
   void begin(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region);
-  /// Which bricks the frame's function shows: those that this view cannot have are loaded from now on, the deepest in
-  /// the next view first.
+  /// Receives the bricks that are visible in the frame. Starts to load those that are outside the current view, in the
+  /// order of their depth in the next view.
   void frame_shows(const std::vector<std::uint8_t>& visible);
-  /// The frame's rays are cast: those that this view has and no ray asked for come last.
+  /// The frame's rays have been cast: visible bricks of the current view that no ray requested may now be loaded, too.
   void frame_cast(const std::vector<std::uint8_t>& visible);
 
  private:
   struct Planned {
     std::size_t brick;
-    bool in_next;  ///< the next view may have it; others, next to it, throw nothing out
+    bool in_next;  ///< inside the next view; other bricks, near it, do not evict any
   };
 
   void plan(const std::vector<std::uint8_t>& visible, float beyond_now);
@@ -52,13 +52,13 @@ class LookAhead {
   BrickCache& bricks_;
   const int limit_;
   scene::Trace* const trace_;
-  std::optional<scene::Camera> last_;  ///< view of the frame before
+  std::optional<scene::Camera> last_;  ///< view of the previous frame
   std::vector<float> outside_now_, outside_next_;
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Planned> planned_;
-  int left_ = 0;  ///< of the frame's limit
+  int left_ = 0;  ///< remaining bricks of the frame's limit
   bool ended_ = false;
   std::thread thread_;
 };

@@ -9,20 +9,20 @@
 
 namespace tessera::volume {
 
-/// A source's values in double precision, voxel by voxel, for one thread: read in blocks of 16^3 voxels, 256 of which
-/// are kept: 10 MB. The source must outlive it.
+/// A source's values in double precision, voxel by voxel, for one thread. They are read in blocks of 16^3 voxels, and
+/// 256 blocks are cached: 10 MB. The source must outlive it.
 class SampleBlocks {
  public:
   explicit SampleBlocks(const scene::SampleSource& source);
 
-  /// Of memory that one may come to hold.
+  /// Upper bound of the memory of one object.
   static std::uint64_t most_bytes(const scene::GridGeometry& geometry);
 
-  /// The values at a voxel's corners, (a, b, c) being number a + 2 b + 4 c; all the same for cell data. NaN where
-  /// blank.
+  /// The values at a voxel's corners; corner (a, b, c) has index a + 2 b + 4 c. All values of cell data are the same.
+  /// NaN where blank.
   [[nodiscard]] std::array<double, 8> corners(const scene::GridIndex& voxel);
 
-  /// Since it was made.
+  /// Counted since construction.
   [[nodiscard]] std::uint64_t blocks_read() const { return blocks_read_; }
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 

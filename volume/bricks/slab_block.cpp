@@ -10,7 +10,7 @@ namespace tessera::volume {
 
 void FloatRoom::make_room(std::size_t count) {
   if (count_ >= count) return;
-  // What was there goes first: nothing in it is wanted.
+  // Frees the old memory first: its contents are not needed.
   let_go();
   constexpr std::size_t large = 1 << 18;
   const std::size_t room = count + count / 8;

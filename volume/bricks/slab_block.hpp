@@ -9,8 +9,8 @@
 
 namespace tessera::volume {
 
-/// Room for floats that are written before they are read. Much of it lies in a mapping of its own: blocks that grow by
-/// and by leave gaps in the heap that nothing else fills, a third of a small budget.
+/// Memory for floats that are written before they are read. Large allocations are separate mappings: blocks that grow
+/// gradually leave gaps in the heap that cannot be reused, up to a third of a small budget.
 class FloatRoom {
  public:
   FloatRoom() = default;
@@ -20,7 +20,7 @@ class FloatRoom {
 
   [[nodiscard]] float* data() { return first_; }
   [[nodiscard]] const float* data() const { return first_; }
-  /// At least `count` floats; where there were fewer, all are 0 now.
+  /// Ensures room for at least `count` floats; if this allocates, all are 0.
   void make_room(std::size_t count);
 
  private:
@@ -31,36 +31,37 @@ class FloatRoom {
   bool mapped_ = false;
 };
 
-/// What a chunk of 32 slabs has of the box of voxels that is cast: all that kernels know of either.
+/// The part of the cast box of voxels in a chunk of 32 slabs, as the kernels use it.
 struct ChunkBox {
-  std::int64_t first_k;              ///< of the chunk, whatever the box
-  int first_slab, slabs;             ///< those of the box are [first_slab, slabs)
-  int i_low, i_last, j_low, j_last;  ///< voxels of the box, the last included
+  std::int64_t first_k;              ///< of the chunk, independent of the box
+  int first_slab, slabs;             ///< the slabs of the box are [first_slab, slabs)
+  int i_low, i_last, j_low, j_last;  ///< voxels of the box, including the last
   scene::GridIndex low, high;        ///< the whole box, along the volume's own axes
 };
 
-/// The samples that one tile's rays need on their way through a chunk of 32 slabs of voxels, as lane scalars.
+/// The samples that one tile's rays need in a chunk of 32 slabs of voxels, as lane scalars.
 ///
-/// Slices   slice n lies at k = first_k + n (point data: lattice planes 0..32; cell data: voxels 0..31). It holds
-///          columns i of [low_i[n], low_i[n] + pitch) and rows j of [low_j[n], low_j[n] + rows): slices slide along
-///          with the rays. Columns and rows beyond the box repeat its last ones; slices in front of it hold nothing.
-/// Slabs    slab n lies between slices n and n + 1. Samples slab_i[n] <= i <= slab_i_last[n], and so for j, are in both
-///          slices; they hold all that the tile's rays meet, and at least 8 columns and rows.
-/// Chunks   chunk c begins at k = 32 c, whatever bricks there are.
+/// Slices    Slice n is at k = first_k + n (point data: lattice planes 0..32; cell data: voxels 0..31). It contains
+///           columns i in [low_i[n], low_i[n] + pitch) and rows j in [low_j[n], low_j[n] + rows): slices are shifted
+///           along with the rays. Columns and rows beyond the box repeat its last ones; slices in front of it are not
+///           filled.
+/// Slabs     Slab n is between slices n and n + 1. Samples slab_i[n] <= i <= slab_i_last[n], and likewise for j, are in
+///           both slices; they include all samples that the tile's rays need, and at least 8 columns and rows.
+/// Chunks    Chunk c begins at k = 32 c, independently of the bricks.
 struct SlabBlock {
   static constexpr int slabs = 32, slices = slabs + 1;
-  static constexpr std::ptrdiff_t margin = 64;  ///< floats that may be read past either end
+  static constexpr std::ptrdiff_t margin = 64;  ///< floats that may be read beyond either end
 
   std::array<int, slices> low_i, low_j;
   std::array<int, slabs> slab_i, slab_i_last, slab_j, slab_j_last;
   std::ptrdiff_t pitch = 0, rows = 0;
   FloatRoom samples;
-  /// What floats leave of the samples, as lane scalars too, in the same places: where gradients are wanted of samples
-  /// that no float holds. Empty without.
+  /// The difference of exact samples and their floats, as lane scalars in the same positions. Used if gradients are
+  /// needed of samples that are not exact as floats, otherwise empty.
   bool has_rest = false;
   FloatRoom rest;
 
-  /// The rest of a sample in the block; null without.
+  /// The rest of a sample in the block; null if `has_rest` is false.
   [[nodiscard]] float* rest_of(const float* sample) {
     return has_rest ? rest.data() + (sample - samples.data()) : nullptr;
   }
@@ -73,7 +74,7 @@ struct SlabBlock {
     const auto s = static_cast<std::size_t>(n);
     return samples.data() + margin + (n * rows + (j - low_j[s])) * pitch + (i - low_i[s]);
   }
-  /// Makes room for `pitch` and `rows` as they are; what is there is garbage, but finite or NaN.
+  /// Makes room for the current `pitch` and `rows`; the contents are arbitrary finite numbers or NaN.
   void reserve() {
     const auto size = static_cast<std::size_t>(2 * margin + slices * pitch * rows);
     samples.make_room(size);
