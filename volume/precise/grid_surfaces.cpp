@@ -13,7 +13,7 @@ GridSurfaces::GridSurfaces(const Surfaces& surfaces, const scene::TransferFuncti
     lanes.push_back(integrals::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit));
   if (lanes.empty()) return;
   holding_.resize(ranges.count());
-  // Rounding may have moved ranges by two places of a float and a unit.
+  // Rounding may have shifted ranges by two last places of a float and a unit.
   const auto moved = [](float s, float away) { return s + away * (std::abs(s) * 0x1p-22f + 1); };
   for (std::size_t cell = 0; cell < holding_.size(); ++cell) {
     if (!(ranges.low[cell] <= ranges.high[cell])) continue;

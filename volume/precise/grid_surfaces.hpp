@@ -11,21 +11,22 @@
 
 namespace tessera::volume {
 
-/// The iso-surfaces of a frame of a grid with point data, and which cells of 8^3 voxels hold some of them.
+/// The iso-surfaces of a frame of a grid with point data, and the cells of 8^3 voxels that contain them.
 class GridSurfaces {
  public:
-  /// None.
+  /// No surfaces.
   GridSurfaces() = default;
-  /// Of valid surfaces. Of no grid in particular: any cell may hold them.
+  /// The surfaces must be valid. Without a grid: any cell may contain them.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function)
       : set_(surfaces, function), any_(!set_.empty()) {}
-  /// Of a grid with these ranges.
+  /// For a grid with these ranges.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function, const CellRanges& ranges);
 
   [[nodiscard]] const scene::SurfaceSet& set() const { return set_; }
-  /// One byte a cell (cell_ranges.hpp): 1 where the field may go from below a surface's value to it. Empty: any may.
+  /// One byte per cell (cell_ranges.hpp): 1 where the field may cross a surface's value. Empty: any cell may contain
+  /// surfaces.
   [[nodiscard]] std::span<const std::uint8_t> holding() const { return holding_; }
-  /// Whether any cell does.
+  /// Whether any cell may contain surfaces.
   [[nodiscard]] bool any() const { return any_; }
 
  private:

@@ -10,7 +10,7 @@ namespace tessera::volume {
 
 SurfaceView::SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& lanes)
     : count(surfaces.iso_values().size()) {
-  constexpr std::size_t widest = 16;  // lanes
+  constexpr std::size_t widest = 16;  // lanes of the longest vectors
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const SurfaceLight& light = surfaces.parts_of_light();
   const scene::SurfaceSet::PaintColumns& paint = surfaces.paint_by_number();
@@ -20,13 +20,14 @@ SurfaceView::SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& l
   edge.assign(size, infinity);
   edge[0] = -infinity;
   const auto number = [](double v) { return static_cast<float>(v); };
-  // Of the angle a, cos^n changes by n cos^(n-1) sin, at most the root of n / e, and of n where that is less than one.
+  // The derivative of cos^n a is n cos^(n-1) a sin a in magnitude: at most about sqrt(n / e), and at most n for small
+  // n.
   const double shine_slope = light.specular * std::min(light.shininess, 0.61 * std::sqrt(light.shininess + 1));
   const bool samples_exact = lanes.exact && (!lanes.whole || lanes.whole_numbers);
   value_noise = samples_exact ? 0 : 0x1p-24f;
   for (std::size_t n = 0; n < count; ++n) {
     const double value = surfaces.iso_values()[n];
-    // Beyond any sample.
+    // The limits are beyond any sample.
     const double lane = std::clamp((value - lanes.origin) / lanes.unit, -1e30, 1e30);
     const std::uint32_t own = surfaces.crossing(n, true, scene::SurfaceSet::Place::inside);
     const double brightest_channel = std::max({paint.red[own], paint.green[own], paint.blue[own]});
@@ -37,7 +38,7 @@ SurfaceView::SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& l
     blue[n + 1] = number(paint.blue[own]), opacity[n + 1] = number(paint.opacity[own]);
     angle_weight[n + 1] = number(light.diffuse * brightest_channel + shine_slope);
   }
-  // Nor is a value that lanes do not tell from another one that is not.
+  // A value with the same edge as another value is exact only if both are.
   for (std::size_t n = 1; n <= count; ++n)
     for (std::size_t other = 1; other <= count; ++other)
       if (edge[other] == edge[n]) exact[n] = std::min(exact[n], exact[other]);

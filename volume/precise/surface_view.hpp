@@ -9,26 +9,26 @@
 
 namespace tessera::volume {
 
-/// The iso-surfaces of a frame as kernels want them (surface_pieces-inl.h).
+/// The iso-surfaces of a frame as data for the kernels (surface_pieces-inl.h).
 ///
-/// Edges    number 0 is below every value, 1 to `count` are the surfaces' values, ascending, and count + 1 is above
-///          all. A field in gap n is at edge n or above it, and below edge n + 1.
-/// Arrays   by edge, as lane scalars; longer than that, so that a vector can be read at their front.
+/// Edges     Edge 0 is below every value, edges 1 to `count` are the surfaces' values in ascending order, and edge
+///           count + 1 is above all values. A field in gap n is at or above edge n, and below edge n + 1.
+/// Arrays    Indexed by edge, in lane scalars; padded so that a whole vector can be read from the first element.
 struct SurfaceView {
   std::size_t count = 0;
-  std::vector<float> edge, rest;  ///< the value rounded, and what rounding left off
-  std::vector<float> exact;       ///< 1 where lanes hold samples and value exactly, and no other one there, else 0
+  std::vector<float> edge, rest;  ///< the value rounded to float, and the rounding error
+  std::vector<float> exact;       ///< 1 if lanes represent samples and all values of this edge exactly, else 0
   std::vector<float> red, green, blue, opacity;
-  std::vector<float> angle_weight;  ///< light that differs for a radian between normal and ray, at most
+  std::vector<float> angle_weight;  ///< upper bound of the change of light per radian between normal and ray
   float ambient = 0, diffuse = 0, specular = 0, shininess = 0;
-  int whole_shininess = -1;  ///< -1: it is no whole number, or a large one
-  float noise = 0;           ///< of the field in float lanes, lane scalars, anywhere in the volume
-  float brightest = 1;       ///< light or opacity that may come along a ray
+  int whole_shininess = -1;  ///< -1: not an integer, or a large one
+  float noise = 0;           ///< error of the field in float lanes, anywhere in the volume, in lane scalars
+  float brightest = 1;       ///< upper bound of the light or opacity along a ray
   bool any_exact = false;
-  float value_noise = 0;     ///< of a sample in float lanes, as a part of itself
-  double unit = 1;           ///< world units a world gradient is taken per
-  double metric[3][3] = {};  ///< squares of world gradients, as ShadingView has them
-  float stretched = 1;       ///< longest world gradient of a step of one a voxel
+  float value_noise = 0;     ///< relative error of a sample in float lanes
+  double unit = 1;           ///< length unit of world gradients, in world units
+  double metric[3][3] = {};  ///< for squared lengths of world gradients, as in ShadingView
+  float stretched = 1;       ///< largest length of a world gradient whose index gradient is a unit step along an axis
 
   SurfaceView() = default;
   SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& lanes);

@@ -13,9 +13,9 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double on_level = 1e-10;  // of a voxel's largest value, in a clip's plane
+constexpr double on_level = 1e-10;  // relative to a voxel's largest value, in a clip plane
 
-constexpr double rounding = 1e-14;  // more than what field_at() errs, of the largest of its values
+constexpr double rounding = 1e-14;  // exceeds the error of field_at() relative to its largest value
 
 std::array<double, 8> differences(const std::array<double, 8>& corner, double value) {
   std::array<double, 8> d;
@@ -23,7 +23,8 @@ std::array<double, 8> differences(const std::array<double, 8>& corner, double va
   return d;
 }
 
-/// Keeps the sign that all of its values have, for weights in [0, 1]; a weight of 0 or 1 gives a value's own bits.
+/// Linear interpolation for weights in [0, 1] that keeps a common sign of its values; weights of 0 and 1 return a
+/// value's own bits.
 double between(double low, double high, double weight) { return low * (1 - weight) + high * weight; }
 
 double field_at(const std::array<double, 8>& v, const glm::dvec3& p) {
@@ -31,8 +32,8 @@ double field_at(const std::array<double, 8>& v, const glm::dvec3& p) {
                  between(between(v[4], v[5], p.x), between(v[6], v[7], p.x), p.y), p.z);
 }
 
-/// Where a cubic, monotone from u0 to u1, is zero; it is below zero at u0 or at u1, not at both. Newton's method,
-/// halved where it leaves the bracket.
+/// The zero of a cubic that is monotonic from u0 to u1 and below zero at exactly one of them. Newton's method, with
+/// bisection where a step leaves the bracket.
 double zero_of(const std::array<double, 4>& p, double u0, double u1, bool rises) {
   constexpr double close = 1e-15;
   double u = (u0 + u1) / 2;
@@ -49,19 +50,19 @@ double zero_of(const std::array<double, 4>& p, double u0, double u1, bool rises)
 
 }  // namespace
 
-/// A ray's stretch in a voxel, from place `front` to `back` of its unit cube.
+/// A ray's stretch in a voxel, from `front` to `back` in its unit cube.
 struct SurfaceWalk::Stretch {
   std::array<double, 8> corner;
   glm::dvec3 front, back, side;
   bool front_cut, back_cut;
-  double size;  ///< largest of the corners' values
+  double size;  ///< the largest magnitude of the corners' values
 
   [[nodiscard]] glm::dvec3 place(double u) const {
     return {between(front.x, back.x, u), between(front.y, back.y, u), between(front.z, back.z, u)};
   }
   [[nodiscard]] glm::dvec3 end_or_place(double u) const { return u == 0 ? front : u == 1 ? back : place(u); }
   [[nodiscard]] bool cut(double u) const { return (u == 0 && front_cut) || (u == 1 && back_cut); }
-  /// Whether the field is below a value, to the last place.
+  /// Whether the field is below a value, up to the last place.
   [[nodiscard]] bool below(double value, double u) const {
     const double height = field_at(differences(corner, value), end_or_place(u));
     return height < 0 && !(cut(u) && -height <= on_level * size);
@@ -109,7 +110,7 @@ SurfaceWalk::Stretch SurfaceWalk::stretch_of(const VoxelRay& ray, const scene::G
     const double low = geometry_.lattice(a, voxel[a]), high = geometry_.lattice(a, voxel[a] + 1);
     const double origin = ray.origin[axis], step = ray.step[axis];
     const auto place = [&](double z) {
-      constexpr double near = 1e-6;  // rounding is less, but for eyes 1e9 voxels away
+      constexpr double near = 1e-6;  // exceeds the rounding error unless the eye is 1e9 voxels away
       const double p = (origin + z * step - low) / (high - low);
       if (p < near && step != 0 && z == (low - origin) / step) return 0.0;
       if (p > 1 - near && step != 0 && z == (high - origin) / step) return 1.0;
@@ -123,7 +124,7 @@ SurfaceWalk::Stretch SurfaceWalk::stretch_of(const VoxelRay& ray, const scene::G
 double SurfaceWalk::cosine(const VoxelRay& ray, const Stretch& stretch, double u) const {
   const glm::dvec3 p = stretch.place(u);
   std::array<double, 8> v;
-  // A field's slopes do not change with what it is counted from.
+  // Subtracting a constant does not change the slopes.
   for (std::size_t n = 0; n < 8; ++n) v[n] = stretch.corner[n] - stretch.corner[0];
   const auto bilinear = [](double a, double b, double c, double d, double x, double y) {
     return between(between(a, b, x), between(c, d, x), y);
@@ -154,7 +155,8 @@ double SurfaceWalk::cross(const VoxelRay& ray, const VoxelSteps& at, double thro
                                              values.begin());
   if (first >= last) return through;
   const Stretch stretch = stretch_of(ray, at.voxel(), z0, z1, corner);
-  // All values are counted from the first one, and again from their own where rounding might matter.
+  // All values are relative to the first one. Where rounding may matter, below() uses differences from the value
+  // itself.
   const std::array<double, 8> from_first = differences(corner, values[first]);
   const std::array<double, 4> cubic = cubic_of(from_first, stretch.front, stretch.back - stretch.front);
   std::array<double, 4> ends{0, 1, 1, 1}, field{};
@@ -170,7 +172,7 @@ double SurfaceWalk::cross(const VoxelRay& ray, const VoxelSteps& at, double thro
   };
   double behind = 0;
   for (std::size_t e = 0; e < count; ++e) {
-    // Monotone from one end to the next: surfaces come in the order of their values.
+    // Monotonic from one end to the next, so surfaces are crossed in the order of their values.
     const bool up = field[e] <= field[e + 1];
     for (std::size_t n = 0; n < last - first; ++n) {
       const std::size_t iso = up ? first + n : last - 1 - n;

@@ -15,37 +15,38 @@ namespace tessera::volume {
 
 class VoxelSteps;
 
-/// Where a ray crosses a surface (planar depth), and what that sends to the eye.
+/// The planar depth where a ray crosses a surface, and the light that the surface sends to the eye.
 struct SurfaceCrossing {
   double z;
   scene::SurfaceSet::Light light;
 };
 
-/// Finds where rays cross the iso-surfaces of a grid with point data, in double precision, one thread's way: regular
-/// and rectilinear grids.
+/// Finds the crossings of rays and iso-surfaces of a grid with point data, in double precision, for regular and
+/// rectilinear grids. For one thread.
 ///
-/// Places   all roots of the cubic that the trilinear field is along a ray in a voxel, where it goes from below the
-///          value to it or above, or back; they come in the order along the ray. Voxels that share a side have the same
-///          bits there, and which side of a value a field is on follows from its samples: weights that are exact at
-///          planes of the lattice, and sums of products that keep their sign. So no crossing is lost or met twice
-///          between voxels, and none comes where all samples are on one side.
-/// Cut      where a ray begins or ends in a clip's plane the field has a surface's value if that is all but a part in
-///          1e10, as tessera/selection.hpp has it of meshes.
-/// Normal   the trilinear field's gradient there; where it is zero the surface is seen face on.
-/// Blank    voxels with a blank corner have no surface, and their sides are none.
-/// Skips    cells of 8^3 voxels that hold no value (GridSurfaces::holding).
+/// Places    All roots of the cubic that the trilinear field is along a ray in a voxel, where it changes between below
+///           the value and at or above the value, in order along the ray. Voxels that share a face compute the same
+///           bits there, and the sign of the field relative to a value follows from its samples: weights are exact at
+///           lattice planes, and sums of products keep their sign. Therefore no crossing is lost or found twice between
+///           voxels, and none is found where all samples are on one side.
+/// Cut       Where a ray begins or ends in a clip plane, a field within 1e-10 of a surface's value counts as equal to
+///           it, as tessera/selection.hpp specifies for meshes.
+/// Normal    The trilinear field's gradient; where it is zero, the surface is assumed to face the eye.
+/// Blank     Voxels with a blank corner have no surface, nor do their faces.
+/// Skips     Cells of 8^3 voxels without any of the values (GridSurfaces::holding).
 class SurfaceWalk {
  public:
   /// Both must outlive it.
   SurfaceWalk(const scene::SampleSource& source, const GridSurfaces& surfaces);
 
-  /// Appends the crossings of a ray, and ends where surfaces alone let less than `least` through. True if they do.
+  /// Appends the crossings of a ray, and stops where the transmittance of the surfaces alone is below `least`. Returns
+  /// whether it stopped.
   bool find(const VoxelRay& ray, double least, std::vector<SurfaceCrossing>& found);
 
  private:
   struct Stretch;
 
-  /// In the voxel that the ray is in. Gives what is left of `through`.
+  /// Finds the crossings in the ray's current voxel. Returns the remaining part of `through`.
   double cross(const VoxelRay& ray, const VoxelSteps& at, double through, double least,
                std::vector<SurfaceCrossing>& found);
   [[nodiscard]] Stretch stretch_of(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1,

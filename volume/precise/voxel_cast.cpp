@@ -21,7 +21,7 @@
 namespace tessera::volume {
 namespace {
 
-/// One thread's way of making pixels.
+/// One thread's caster of pixels.
 class VoxelPixels final : public WalkSink {
  public:
   VoxelPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
@@ -37,7 +37,7 @@ class VoxelPixels final : public WalkSink {
     least_ = settings.walk.least;
   }
 
-  /// Adds what a ray meets behind what `sum` has.
+  /// Adds the light along a ray behind that in `sum`.
   void add(const VoxelRay& ray, RaySum& sum) {
     if (!(ray.begin < ray.end)) return;
     ++counts_.rays;
@@ -82,7 +82,7 @@ class VoxelPixels final : public WalkSink {
  private:
   static constexpr std::size_t together = 64;
 
-  /// Integrates the lines that have come and puts them behind what there is.
+  /// Integrates the collected lines and adds their light behind the accumulated light.
   void put() {
     integrator_.integrate(batch_);
     for (std::size_t n = 0; n < batch_.size; ++n) {
@@ -181,7 +181,7 @@ VoxelRay VoxelCaster::part_in(const VoxelBox& chunk, const VoxelRay& ray) const 
     const bool up = ray.step[axis] > 0;
     const double at_low = (low - ray.origin[axis]) / ray.step[axis],
                  at_high = (high - ray.origin[axis]) / ray.step[axis];
-    // The ray ends at the volume's first and last planes.
+    // The ray already ends at the volume's first and last planes.
     if (chunk.low[a] > 0) (up ? part.begin : part.end) = up ? std::max(part.begin, at_low) : std::min(part.end, at_low);
     if (chunk.high[a] < last)
       (up ? part.end : part.begin) = up ? std::min(part.end, at_high) : std::max(part.begin, at_high);

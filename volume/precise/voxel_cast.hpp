@@ -25,34 +25,35 @@ namespace tessera::volume {
 struct VoxelCastSettings {
   WalkSettings walk;
   std::optional<scene::Shading> shading;
-  std::vector<scene::HalfSpace> clip{};    ///< that rays are kept in
-  const GridSurfaces* surfaces = nullptr;  ///< in the volume; null: none
+  std::vector<scene::HalfSpace> clip{};    ///< half-spaces to which rays are clipped
+  const GridSurfaces* surfaces = nullptr;  ///< null: no surfaces
 };
 
 struct VoxelCastCounts {
   std::uint64_t rays = 0, voxels = 0, lines = 0, blocks_read = 0, bytes_read = 0;
 };
 
-/// What a ray has gathered, in double precision.
+/// The accumulated light of a ray, in double precision.
 struct RaySum {
   double red = 0, green = 0, blue = 0, optical_depth = 0, transmittance = 1;
-  double first = std::numeric_limits<double>::infinity();  ///< planar depth where it begins
+  double first = std::numeric_limits<double>::infinity();  ///< planar depth at which it begins
 
-  /// `bound`: RayFragment::error_bound.
+  /// `bound`: value of RayFragment::error_bound.
   [[nodiscard]] RayFragment fragment(int x, int y, double z_back, float bound) const;
 };
 
-/// Casts rays pixel by pixel along a VoxelWalk, each line integrated exactly in double precision: those of rectilinear
-/// grids, which are not straight in index space, so that the caster's lanes are of no use, and those of which float
-/// lanes are not sure (lane_error_bound.hpp). Surfaces are put between the parts of rays that they divide.
+/// Casts rays pixel by pixel along a VoxelWalk, integrating each line exactly in double precision. It casts the rays of
+/// rectilinear grids, because rays that are not straight in index space are unsuitable for the lane kernels, and rays
+/// whose light in float lanes is uncertain (lane_error_bound.hpp). Surfaces are inserted between the parts of rays that
+/// they separate.
 ///
-/// Error    below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on
-///          top.
-/// Bits     of a ray depend on nothing but itself and where it is cut.
-/// Threads  any number may use one caster. Source, function and what the settings point to must outlive it.
+/// Error     Below 1e-5 for any spacings, plus what the walk may omit (WalkSettings::tolerance, least).
+/// Bits      The bits of a ray depend only on the ray and on where it is divided.
+/// Threads   Any number may use one caster. Source, function and the objects that the settings refer to must outlive
+///           it.
 class VoxelCaster {
  public:
-  /// A valid camera and size.
+  /// Camera and size must be valid.
   VoxelCaster(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
               const scene::TransferFunction& function, const VoxelCastSettings& settings);
   ~VoxelCaster();
@@ -61,14 +62,14 @@ class VoxelCaster {
 
   /// The ray through a pixel's centre.
   [[nodiscard]] VoxelRay ray(int x, int y) const;
-  /// The part of a ray in a chunk. Chunks that share a plane find it at the same depth.
+  /// The part of a ray in a chunk. Chunks that share a plane compute the same depth for it.
   [[nodiscard]] VoxelRay part_in(const VoxelBox& chunk, const VoxelRay& ray) const;
-  /// Adds what `ray` meets behind what `sum` has; nothing if it is empty.
+  /// Adds the light along `ray` behind that in `sum`; does nothing if the ray is empty.
   void add(const VoxelRay& ray, RaySum& sum);
 
-  /// The rays of the pixels of a region, so far as they are in `part`, by rectangles of 32x32 that the sink hears of as
-  /// they are finished. Throws scene::FrameStopped once `stop` is asked for. Uses the calling thread's arena, as cast()
-  /// below does.
+  /// Casts the parts in `part` of the rays of a region's pixels, in rectangles of 32x32, which are reported to the sink
+  /// when finished. Throws scene::FrameStopped after a request on `stop`. Uses the calling thread's arena, like cast()
+  /// below.
   void cast(const VoxelBox& part, const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop = {});
   void cast(std::span<const UncertainRay> rays, FragmentSink& sink, const std::stop_token& stop = {});
 
@@ -79,7 +80,7 @@ class VoxelCaster {
   std::unique_ptr<State> state_;
 };
 
-/// Planes of the lattice that a ray crosses, at most: what the cast of its pixel costs where everything shows.
+/// Upper bound of the lattice planes that a ray crosses: the cost of casting its pixel if everything is visible.
 double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry);
 
 }  // namespace tessera::volume

@@ -34,7 +34,7 @@ void VoxelLayers::add(const VoxelRay& ray, std::vector<integrals::RayLayer>& lay
   ray_ = &ray, ended_ = &layers;
   open_ = {};
   crossings_.clear();
-  // All of them: what hides one from the eye does not hide it in its layer.
+  // All crossings: a surface that is hidden from the eye may be visible in its layer.
   if (surfaces_) surfaces_->find(ray, 0, crossings_);
   VoxelRay part = ray;
   for (const SurfaceCrossing& crossing : crossings_) {
@@ -55,7 +55,7 @@ void VoxelLayers::line(double z0, double z1, double k_0, double k_1) {
   stretches_.push_back({z0, z1, k_0, k_1, (z1 - z0) * ray_->length_per_depth, light_.own, light_.white});
 }
 
-/// Integrates the lines that have come and adds them to the layers.
+/// Integrates the collected lines and adds them to the layers.
 void VoxelLayers::put() {
   batch_.size = stretches_.size();
   for (std::size_t n = 0; n < batch_.size; ++n) {

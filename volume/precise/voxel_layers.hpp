@@ -23,12 +23,12 @@ struct VoxelLayersSettings {
   scene::Emission emission = scene::Emission::absorption;
   Peel peel;
   std::optional<scene::Shading> shading{};
-  const GridSurfaces* surfaces = nullptr;  ///< in the volume; null: none
+  const GridSurfaces* surfaces = nullptr;  ///< null: no surfaces
 };
 
-/// The layers of a grid's rays (integrals/ray_layers.hpp), along a VoxelWalk in double precision: regular and
-/// rectilinear grids, point and cell data; one thread's way. A ray goes on behind opaque matter until its last layer is
-/// opaque too, or it ends.
+/// The layers of a grid's rays (integrals/ray_layers.hpp), along a VoxelWalk in double precision, for regular and
+/// rectilinear grids with point or cell data. For one thread. A ray continues behind opaque matter until its last layer
+/// is opaque too, or until it ends.
 class VoxelLayers final : public WalkSink {
  public:
   /// Source, function and surfaces must outlive it.

@@ -12,7 +12,7 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double in_plane = 1e-9;  ///< voxels that a ray parallel to a plane may be off it, or leave it by
+constexpr double in_plane = 1e-9;  ///< voxels: a ray this close to a lattice plane counts as being in it
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void VoxelRays::cut(const glm::dvec3& from, const glm::dvec3& step, VoxelRay& ra
   for (const scene::HalfSpace& h : clip_) {
     const double climb = glm::dot(h.normal, step), height = glm::dot(h.normal, from - h.point);
     if (std::abs(climb) * deepest_ >= in_plane * voxel) {
-      // A plane in the volume's side, but for rounding, is there too.
+      // A clip plane that coincides, up to rounding, with the volume's boundary also cuts the ray.
       const double z = -height / climb;
       double& end = climb > 0 ? ray.begin : ray.end;
       const bool there = std::abs(z - end) <= 1e-12 * (std::abs(z) + std::abs(end)),
@@ -78,7 +78,7 @@ VoxelRay VoxelRays::ray(double x, double y) const {
     const double low = geometry_.lattice(a, 0), high = geometry_.lattice(a, geometry_.points[a] - 1);
     const double voxel = (high - low) / static_cast<double>(geometry_.points[a] - 1);
     if (std::abs(ray.step[axis]) * deepest_ < in_plane * voxel) {
-      // Rounding would have it change sides on its way.
+      // With rounding errors, the ray would change sides along its path.
       const double by_x = (to_local_ * basis_.right)[axis] * pixel_ * (perspective_ ? deepest_ : 1.0),
                    by_y = -(to_local_ * basis_.up)[axis];
       ray.step[axis] = 0;

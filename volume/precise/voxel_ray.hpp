@@ -13,28 +13,28 @@
 
 namespace tessera::volume {
 
-/// A view ray in a grid's local frame: at planar depth z it is at origin + z * step, and in the volume and in view
+/// A view ray in a grid's local frame: at planar depth z it is at origin + z * step. It is in the volume and in view
 /// between `begin` and `end` (empty if begin >= end).
 struct VoxelRay {
   glm::dvec3 origin, step;
   double length_per_depth, begin, end;
-  glm::dvec3 aside{0};  ///< of the origin, of a ray in a plane of the lattice: where the voxel is that it counts for
-  double begin_cut = nowhere, end_cut = nowhere;  ///< `begin` or `end`, if a clip's plane is there
+  glm::dvec3 aside{0};  ///< offset of a ray in a lattice plane into the voxels to which it belongs
+  double begin_cut = nowhere, end_cut = nowhere;  ///< `begin` or `end`, if it is in a clip plane
 
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The rays of a picture; any lattice.
+/// The rays of an image, for any lattice.
 class VoxelRays {
  public:
-  /// A valid camera and size. Rays are kept in the half-spaces of `clip`; one that runs in a plane of them counts to
-  /// the side that it would be on if it were shifted likewise.
+  /// Camera and size must be valid. Rays are clipped to the half-spaces of `clip`. A ray in a clip plane belongs to the
+  /// side that it would be on if it were shifted as in ray().
   VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
             std::span<const scene::HalfSpace> clip = {});
 
-  /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5). Where it runs in a plane
-  /// of the lattice it has that plane's values, and counts for the voxels that it would be in if it were shifted by
-  /// (e, e^2) pixel, e infinitely small.
+  /// The ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). A ray in a lattice
+  /// plane has the values of that plane, and belongs to the voxels that it would be in if it were shifted by (e, e^2)
+  /// pixels for an infinitesimal e.
   [[nodiscard]] VoxelRay ray(double x, double y) const;
 
  private:
@@ -46,8 +46,8 @@ class VoxelRays {
   glm::dmat3 to_local_;
   bool perspective_;
   double width_, height_, pixel_;
-  double deepest_ = 0;                  ///< planar depth of the volume's corners, at most
-  std::vector<scene::HalfSpace> clip_;  ///< normals of length 1
+  double deepest_ = 0;                  ///< upper bound of the planar depths of the volume's corners
+  std::vector<scene::HalfSpace> clip_;  ///< unit normals
 };
 
 }  // namespace tessera::volume

@@ -13,13 +13,13 @@
 
 namespace tessera::volume {
 
-/// What shading makes of a colour c: own * c + white.
+/// Shading turns a colour c into own * c + white.
 struct VoxelLight {
   double own = 1, white = 0;
 };
 
-/// Light on the matter of a grid, voxel by voxel in double precision (scene/shading.hpp): light and material in the
-/// world.
+/// Shading of a grid's matter, voxel by voxel in double precision (scene/shading.hpp), with light and material in world
+/// space.
 class VoxelShading {
  public:
   VoxelShading(const scene::Shading& shading, const scene::Camera& camera, const scene::GridGeometry& geometry)
@@ -32,7 +32,7 @@ class VoxelShading {
     to_light_ = basis.right * to_light_.x + basis.up * to_light_.y - basis.forward * to_light_.z;
   }
 
-  /// On a stretch of a ray: by the trilinear field's gradient in its middle.
+  /// The shading of a ray's stretch in a voxel, from the gradient of the trilinear field at its middle.
   [[nodiscard]] VoxelLight light(const VoxelStretch& s, const glm::dvec3& step) const {
     const glm::dvec3 p = s.front + s.rise * 0.5;
     const std::array<double, 8>& v = s.corner;
@@ -42,7 +42,7 @@ class VoxelShading {
     const glm::dvec3 slope(between(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], p.y, p.z),
                            between(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], p.x, p.z),
                            between(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], p.x, p.y));
-    // Where values differ by no more than rounding, of whatever made them, nothing is told of a direction.
+    // Differences no larger than the rounding of the data contain no information about a direction.
     constexpr double rounding = 1e-12;
     double largest = 0;
     for (const double value : v) largest = std::max(largest, std::abs(value));

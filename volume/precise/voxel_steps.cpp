@@ -53,7 +53,7 @@ void VoxelSteps::forward(std::size_t axis) {
 }
 
 void VoxelSteps::step() {
-  // Planes may have been passed already, by rounding or at once with another.
+  // Planes may have been passed already, because of rounding or together with another plane.
   begin_ = std::max(begin_, end_);
   if (next_[nearest_] == never) {
     begin_ = ray_.end;
@@ -73,7 +73,7 @@ void VoxelSteps::leave(const scene::GridIndex& low, const scene::GridIndex& high
       const int axis = static_cast<int>(a);
       const std::int64_t there =
           std::clamp(voxel_along(geometry_, a, ray_.origin[axis] + out * ray_.step[axis]), low[a], high[a] - 1);
-      // That is within a voxel or two: planes at `out` and before it are passed.
+      // This is within one or two voxels of the result; planes up to `out` are then passed one by one.
       if ((there - voxel_[a]) * direction_[a] > 1) voxel_[a] = there - direction_[a], next_[a] = far_plane(a);
       while (next_[a] > out && voxel_[a] != (direction_[a] > 0 ? low[a] : high[a] - 1) &&
              plane(a, voxel_[a] + (direction_[a] > 0 ? 0 : 1)) > out) {

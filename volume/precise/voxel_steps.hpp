@@ -9,16 +9,16 @@
 
 namespace tessera::volume {
 
-/// The voxel that has a place of the local frame along an axis, or is nearest.
+/// The voxel along an axis that contains a position in the local frame, or the nearest one.
 std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, double local);
 
-/// A ray's way from voxel to voxel, front to back:
+/// A ray's path from voxel to voxel, front to back:
 ///
 ///     for (VoxelSteps at(geometry, ray); at.inside(); at.step())
 ///       if (at.begin() < at.end()) ...  // the ray is in at.voxel() between these planar depths
 ///
-/// A stretch ends at planes of the lattice, whose depths are each computed from the plane alone, or with the ray. Where
-/// several are passed at once, by rounding or at an edge, stretches without length come between.
+/// A stretch ends at lattice planes or with the ray. The depth of a plane is computed from the plane alone. Where
+/// several planes are passed at once, because of rounding or at an edge, stretches of zero length occur in between.
 class VoxelSteps {
  public:
   /// Both must outlive it.
@@ -29,7 +29,7 @@ class VoxelSteps {
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return end_; }
   void step();
-  /// Goes to where the ray leaves the voxels low <= (i, j, k) < high, which have the one where it is.
+  /// Advances to where the ray leaves the voxels low <= (i, j, k) < high, which contain the current one.
   void leave(const scene::GridIndex& low, const scene::GridIndex& high);
 
  private:

@@ -16,7 +16,7 @@ constexpr std::int64_t cell_side = 8;
 
 }  // namespace
 
-/// s over u in [0, 1], degree three.
+/// The field s as a cubic in u, for u in [0, 1].
 struct VoxelWalk::FieldCubic {
   static constexpr double last_places = 0x1p-51;
   std::array<double, 4> c;
@@ -27,8 +27,9 @@ struct VoxelWalk::FieldCubic {
     return at(m) + (c[2] + 3 * c[3] * m) * h * h / 3;
   }
   [[nodiscard]] double slope(double u) const { return (3 * c[3] * u + 2 * c[2]) * u + c[1]; }
-  /// Where the cubic, monotone from u0 to u1, takes a value between those at the ends, or just behind: by Newton's
-  /// method between two places that close in on it, and by halves where that leads out of them or is slow.
+  /// A position at or just behind which the cubic, monotonic from u0 to u1, takes a value between those at the ends.
+  /// Uses Newton's method within a shrinking bracket, with bisection where a step leaves the bracket or convergence is
+  /// slow.
   [[nodiscard]] double crossing(double u0, double u1, double value) const {
     const double s_0 = at(u0), s_1 = at(u1);
     const bool rising = s_1 > s_0;
@@ -38,7 +39,7 @@ struct VoxelWalk::FieldCubic {
       const double above = at(u) - value;
       const bool before = (above < 0) == rising;
       (before ? u0 : u1) = u;
-      // A little beyond the place, so that the other end closes in as well.
+      // Steps slightly beyond the root, so that the other end of the bracket moves as well.
       const double step = above / slope(u), beyond = std::abs(step) * 0x1p-8 + last_places / 2 * u1;
       u -= before ? step - beyond : step + beyond;
     }
@@ -79,7 +80,7 @@ void VoxelWalk::walk(const VoxelRay& ray, WalkSink& sink) {
   }
 }
 
-/// The voxel that a ray is in from depth z0 to z1.
+/// Walks through the voxel that contains the ray from depth z0 to z1.
 void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink) {
   if (!settings_.visible.empty() &&
       settings_.visible[static_cast<std::size_t>(
@@ -102,7 +103,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   const auto first = std::lower_bound(knots_.begin(), knots_.end(), low,
                                       [](const scene::Knot& knot, double v) { return knot.value < v; });
   origin_ = first != knots_.end() && first->value <= high ? first->value : low;
-  if (low == high) {  // cell data too
+  if (low == high) {  // includes cell data
     const double number = knot_number(knots_above(low - origin_), low - origin_);
     return sink.line(z0, z1, number, number);
   }
@@ -118,7 +119,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   for (std::size_t e = 0; e < count; ++e) {
     double u = ends[e];
     const double stop = ends[e + 1], s_stop = field.at(stop);
-    // Monotone from u to stop: knots come in order.
+    // Monotonic from u to stop, so knots are crossed in order.
     while (u < stop) {
       const double s = field.at(u);
       const bool up = s_stop >= s;
@@ -126,7 +127,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
       const double next = (up ? knot < s_stop : knot > s_stop) ? field.crossing(u, stop, knot) : stop;
       last_knot_ = knot;
       if (next > u) add_smooth(cubic, u, next, 0, sink);
-      if (!(next > u) && next != stop) {  // the crossing is here: past the knot
+      if (!(next > u) && next != stop) {  // the crossing is at u itself: continue behind the knot
         u = std::nextafter(u, 2.0);
         continue;
       }
@@ -135,7 +136,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   }
 }
 
-/// The first knot ahead of s; not the one just crossed. Infinite if there is none.
+/// The next knot from s on, other than the one just crossed. Infinite if there is none.
 double VoxelWalk::next_knot(double s, double crossed, bool up) const {
   constexpr double none = std::numeric_limits<double>::infinity();
   if (up) {
@@ -148,7 +149,7 @@ double VoxelWalk::next_knot(double s, double crossed, bool up) const {
   return k == knots_.begin() ? -none : std::prev(k)->value - origin_;
 }
 
-/// The first knot beyond s.
+/// The index of the first knot above s.
 std::size_t VoxelWalk::knots_above(double s) const {
   return static_cast<std::size_t>(
       std::upper_bound(knots_.begin(), knots_.end(), s,
@@ -156,7 +157,7 @@ std::size_t VoxelWalk::knots_above(double s) const {
       knots_.begin());
 }
 
-/// Of s, which lies between the knot `above` and the one before it.
+/// The knot number of s, which is between the knot `above` and the one before it.
 double VoxelWalk::knot_number(std::size_t above, double s) const {
   if (above == 0) return -1;
   const auto below = static_cast<double>(above - 1);
@@ -165,12 +166,13 @@ double VoxelWalk::knot_number(std::size_t above, double s) const {
   return below + std::clamp((s - low) / (high - low), 0.0, 1.0);
 }
 
-/// A monotone stretch in one interval of the transfer function: halved until a line through its mean is enough.
+/// A monotonic stretch in one interval of the transfer function. It is halved until a line with the same mean is
+/// accurate enough.
 void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, int halvings, WalkSink& sink) const {
   const FieldCubic& p = stretch.field;
   const double s_0 = p.at(u0), s_1 = p.at(u1), middle = p.at((u0 + u1) / 2), e = u1 - u0;
   const std::size_t above = knots_above(middle);
-  // The line that stands for the stretch is its chord, moved to the mean.
+  // The line that replaces the stretch is its chord, shifted to the mean of the cubic.
   const double shift = p.mean(u0, u1) - (s_0 + s_1) / 2;
   double low = -std::numeric_limits<double>::infinity(), high = -low, kappa = 0;
   if (above > 0) low = knots_[above - 1].value - origin_, kappa = knots_[above - 1].extinction;
@@ -184,7 +186,7 @@ void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, in
     const double l = e * stretch.length, span = std::abs(s_1 - s_0), even = std::abs(middle - (s_0 + s_1) / 2);
     const double odd = std::abs(p.c[3]) * e * e * e, rho = even + odd / 4;
     const double tau = kappa * l, weight = independent_ ? l : tau;
-    // Beyond the interval's ends, which lines are kept in, goes what the move takes there.
+    // Lines are clipped to the interval; `cut` is the largest part of the shifted chord outside.
     const double cut = std::max({0.0, low - std::min(s_0, s_1) - shift, std::max(s_0, s_1) + shift - high});
     const double cut_error = l * cut * (slope * std::max(1.0, color) + (independent_ ? 1 : kappa) * color_slope);
     const double error = cut_error +
@@ -199,7 +201,7 @@ void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, in
   sink.line(stretch.depth(u0), stretch.depth(u1), knot_number(above, s_0 + shift), knot_number(above, s_1 + shift));
 }
 
-/// Whether anything between two values shows.
+/// Whether the transfer function is visible anywhere between two values.
 bool VoxelWalk::shows(double low, double high) const {
   const auto lit = [&](const scene::Knot& k) {
     return k.extinction > 0 || (independent_ && std::max({k.color.x, k.color.y, k.color.z}) > 0);

@@ -15,52 +15,53 @@
 
 namespace tessera::volume {
 
-/// A ray's stretch in one voxel, planar depths z0 to z1. `corner` a + 2 b + 4 c is the value at the voxel's corner
-/// (a, b, c), all the same for cell data; the ray is at `front` of the unit cube at z0, and at front + rise at z1.
+/// A ray's stretch in one voxel, between planar depths z0 and z1. Element a + 2 b + 4 c of `corner` is the value at the
+/// voxel's corner (a, b, c); all are the same for cell data. In the unit cube of the voxel, the ray is at `front` at
+/// z0, and at front + rise at z1.
 struct VoxelStretch {
   double z0, z1;
   std::array<double, 8> corner;
   glm::dvec3 front, rise, side;  ///< side: of the voxel, world units along the grid's axes
 };
 
-/// What a walk finds, front to back.
+/// Receives the results of a walk, front to back.
 class WalkSink {
  public:
   virtual ~WalkSink() = default;
-  /// The ray has come to a voxel of which something shows.
+  /// The ray enters a voxel in which something is visible.
   virtual void enter(const VoxelStretch& stretch) = 0;
-  /// In it the scalar goes in a straight line between planar depths z0 and z1, within one interval of the transfer
-  /// function, from knot number k_0 to k_1: n + t is at t in [0, 1] of the way from knot n to the next, n from 0 on;
-  /// below 0 and from the last number on nothing changes. So scalars keep their places between knots that are much
-  /// closer than they are large. over_knot_numbers() is the function to look them up in.
+  /// The scalar in this voxel is linear between planar depths z0 and z1, within one interval of the transfer function,
+  /// from knot number k_0 to k_1. Number n + t is at the fraction t in [0, 1] between knots n = 0, 1, ... and n + 1.
+  /// The function is constant below 0 and from the last number on. These numbers keep the position of scalars between
+  /// knots whose distance is much smaller than their values. over_knot_numbers() is the function of them.
   virtual void line(double z0, double z1, double k_0, double k_1) = 0;
-  /// At most what is let through so far; below `least` the walk ends.
+  /// Upper bound of the transmittance so far; below `least` the walk ends.
   [[nodiscard]] virtual double transmittance() const = 0;
 };
 
-/// The transfer function with its knots at 0, 1, 2 and so on; the two knots of a step have numbers of their own.
+/// The transfer function with its knots moved to 0, 1, 2 and so on; the two knots of a step have different numbers.
 scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function);
 
 struct WalkSettings {
   scene::Emission emission = scene::Emission::absorption;
-  double tolerance = 2e-9;  ///< linear RGBA, a stretch taken for a line
+  double tolerance = 2e-9;  ///< largest error, in linear RGBA, of replacing a stretch by a line
   double least = 0;         ///< transmittance at which the walk ends
-  /// One byte for each cell of 8^3 voxels (cell_ranges.hpp): whether something of it shows; empty: all may.
+  /// One byte for each cell of 8^3 voxels (cell_ranges.hpp): whether any of it is visible; empty: any cell may be.
   std::span<const std::uint8_t> visible = {};
 };
 
-/// Goes along rays from voxel to voxel in double precision, one thread's way: regular and rectilinear grids, point and
-/// cell data. The cubic of the trilinear field is cut where it turns and at the knots of the transfer function, and
-/// into stretches so short that a line through its mean gives their light to the tolerance (ray_piece-inl.h has the
-/// bound). The field is computed in differences to a knot among the voxel's values, or to the least of them: fields and
-/// knots may differ by last places of doubles.
+/// Walks along rays from voxel to voxel in double precision, for regular and rectilinear grids with point or cell data.
+/// For one thread. The cubic of the trilinear field is divided at its extrema and at the knots of the transfer
+/// function, and into stretches so short that a line with the same mean gives their light within the tolerance
+/// (ray_piece-inl.h derives the bound). The field is computed relative to a knot among the voxel's values, or to the
+/// least of them, because fields and knots may differ only in the last places of doubles.
 class VoxelWalk {
  public:
   VoxelWalk(const scene::SampleSource& source, const scene::TransferFunction& function, const WalkSettings& settings);
 
   void walk(const VoxelRay& ray, WalkSink& sink);
 
-  /// Since it was made.
+  /// Counted since construction.
   struct Counts {
     std::uint64_t voxels = 0, blocks_read = 0, bytes_read = 0;
   };
@@ -83,8 +84,8 @@ class VoxelWalk {
   SampleBlocks blocks_;
   std::vector<scene::Knot> knots_;
   bool independent_;
-  double origin_ = 0;     ///< scalars in the voxel are counted from here
-  double last_knot_ = 0;  ///< crossed, from there
+  double origin_ = 0;     ///< scalars in the current voxel are relative to this value
+  double last_knot_ = 0;  ///< last knot crossed, relative to it
   std::uint64_t voxels_ = 0;
 };
 
