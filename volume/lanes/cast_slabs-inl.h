@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packets of rays through one chunk of 32 slabs, by exact integrals; included once per instruction set.
+// Casts packets of rays through one chunk of 32 slabs by exact integrals. Included once per instruction set (Highway's
+// include guard idiom).
 //
-// What      The light that each ray gathers in the chunk, added behind what it had (TileRays), and a bound of its
-//           error.
-// How       Slabs go in groups of eight. First the field of those that every live ray crosses from plane to plane is
-//           found as lines (slab_lines-inl.h), one slab independent of the next, then their light is added front to
-//           back: so the processor overlaps slabs. Where the field is smooth, one line stands for two slabs. Slabs in
-//           which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h); so do lanes
-//           whose field may meet the value of a surface (surface_pieces-inl.h).
-// Accuracy  A line stands for a slab where ray_piece-inl.h's bound of what the field's distance from it errs is below
-//           the tolerance of a piece; a Bend adds what the distance does to first order.
-// Bits      They depend on the rays of a vector and the chunk alone: whether lanes are taken together depends on all of
-//           them. So they differ between instruction sets.
-// Ends      Lanes that no longer let anything through are taken out every four slabs.
+// What      The light that each ray accumulates in the chunk, composited behind its previous light (TileRays), and a
+//           bound of its error.
+// How       Slabs are processed in groups of eight. First the field in the slabs that every live ray crosses from plane
+//           to plane is found as lines (slab_lines-inl.h), each slab independently. Then their light is added front to
+//           back. This order lets the processor overlap slabs. Where the field is smooth, one line represents two
+//           slabs. Slabs in which rays begin or end, shaded slabs and cell data are cast voxel by voxel
+//           (voxel_pieces-inl.h), and so are lanes whose field may meet the value of a surface (surface_pieces-inl.h).
+// Accuracy  A line represents a slab if the bound of ray_piece-inl.h for the field's distance from the line is below
+//           the tolerance of a piece; a Bend adds the effect of that distance to first order.
+// Bits      Results depend on a packet's rays and the chunk alone: lanes of a vector are integrated together, and the
+//           vectors of a packet share the current interval. Therefore they differ between instruction sets.
+// Ends      Opaque lanes are removed every four slabs.
 
 #if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
@@ -34,7 +35,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// What the packets of a tile are cast through and into.
+/// The inputs and outputs of casting the packets of a tile.
 template <class Lookup>
 struct TileCast {
   const ChunkView& chunk;
@@ -44,11 +45,11 @@ struct TileCast {
   TileCounts& counts;
 };
 
-/// One packet, or some lanes of it, on its way through a chunk.
+/// Casts one packet, or some of its lanes, through a chunk.
 template <bool cell_data, class Surfaces, class Window, class Lookup>
 class PacketCast {
  public:
-  /// `before` is the transmittance up to the chunk, `seen` whether there was light.
+  /// `before` is the transmittance in front of the chunk, `seen` whether light has begun.
   HWY_INLINE PacketCast(const TileCast<Lookup>& tile, const PacketSlabs& slabs, const Lanes& lanes, VF before, MF seen)
       : chunk_(tile.chunk),
         frame_(tile.chunk.frame),
@@ -92,7 +93,7 @@ class PacketCast {
     return {zero, Set(DF(), 1.0f), zero, zero, zero, zero};
   }
 
-  /// The slabs that all live lanes cross from plane to plane: [plain_from_, plain_to_).
+  /// Finds the slabs that all live lanes cross from plane to plane: [plain_from_, plain_to_).
   HWY_INLINE void find_ends() {
     const DF d;
     mirrored_.live = lanes_.k_in < lanes_.k_out;
@@ -102,7 +103,7 @@ class PacketCast {
     plain_to_ = GetLane(MinOfLanes(d, IfThenElse(mirrored_.live, lanes_.k_out, Set(d, 64.0f))));
   }
 
-  /// Rays that no longer let anything through are done. False if all are, or have left the volume.
+  /// Ends opaque rays. Returns false if all rays are opaque or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
     const MF dark = And(mirrored_.live, before_ * rays_.light.transmittance < Set(d, frame_.least_transmittance));
@@ -113,7 +114,7 @@ class PacketCast {
     return !AllFalse(d, And(mirrored_.live, lanes_.k_out > Set(d, static_cast<float>(n))));
   }
 
-  /// Whether the eight slabs from n on may meet a visible cell.
+  /// Whether the eight slabs beginning with n may meet a visible cell.
   HWY_INLINE bool any_visible_ahead(int n) const {
     const int m = n + SlabLines::most - 1;
     const std::int64_t end_k = frame_.voxels[static_cast<std::size_t>(chunk_.axes.k)];
@@ -135,7 +136,7 @@ class PacketCast {
             slabs_.border[n] == 0};
   }
 
-  /// Lanes in slab n.
+  /// The lanes in slab n.
   HWY_INLINE MF here(int n) const {
     const DF d;
     return And(mirrored_.live,
@@ -171,7 +172,7 @@ class PacketCast {
           kind = Kind::empty;
           continue;
         }
-        // A gather reads where every lane is: only those that cross this slab are sure to be in the block.
+        // A gather reads at every lane's position; only lanes that cross this slab are certainly in the block.
         MirroredLanes gathered = mirrored_;
         if (std::is_same_v<Window, GatherWindow>) gathered.live = here(n);
         const MirroredLanes& found = std::is_same_v<Window, GatherWindow> ? gathered : mirrored_;
@@ -193,22 +194,22 @@ class PacketCast {
     }
   }
 
-  /// Two slabs as one line from front to back. The field leaves it by a tent, as high as a's back is above the middle
-  /// of the ends, and by no more than r beyond that:
+  /// Adds two slabs as one line from front to back. The field deviates from it by a tent, whose height is that of a's
+  /// back end above the middle of the line, and by at most r in addition:
   ///
   ///          . a.s_1                    tent = a.s_1 - (a.s_0 + b.s_1) / 2
-  ///        .   .                        r    = what a and b leave their own lines by
+  ///        .   .                        r    = deviations of a and b from their own lines
   ///      .       . b.s_1
   ///    .   . - '
   ///   a.s_0
   ///
-  /// The tent is even about the middle, so of its product with the line's tilt nothing is left, only of r's. False, and
-  /// nothing added, if what is left may be too much.
+  /// The tent is even about the middle, so its product with the slope of the line vanishes, and only that of r remains.
+  /// Returns false, and adds nothing, if the remaining error may be too large.
   HWY_INLINE bool add_pair(const Line& a, const Line& b, int n) {
     const DF d;
     const VF half = Set(d, 0.5f);
     const UniformLookup& table = current_.uniform();
-    // Not a number where either slab's field is not, which Max alone may leave out.
+    // NaN where either slab's field is NaN, because Max alone may drop NaN.
     const VF r = MulAdd(Zero(d), a.rho + b.rho, Max(a.rho, b.rho));
     const VF low = Min(Min(a.s_0, a.s_1), b.s_1) - r, high = Max(Max(a.s_0, a.s_1), b.s_1) + r;
     if (HWY_UNLIKELY(!current_.around(low, high, mirrored_.live)) || !surfaces_.none_between(low, high, mirrored_.live))
@@ -228,7 +229,7 @@ class PacketCast {
     return true;
   }
 
-  /// Adds slab n, or n and the next if `two` and they may be taken as one: how many.
+  /// Adds slab n, or slabs n and n + 1 if `two` is set and one line can represent both. Returns the number of slabs.
   HWY_INLINE int add_lines(const SlabLines& lines, int n, bool two) {
     const DF d;
     const int m = n - lines.first;
@@ -266,8 +267,8 @@ class PacketCast {
     return 1;
   }
 
-  /// Whether all samples that lanes may meet in slab n are in one interval for certain, which then is the current one:
-  /// then the field is, too, though its rounding may be beyond a step that it is near, or on.
+  /// Whether all samples that lanes may meet in slab n are certainly in one interval, which then becomes the current
+  /// one. Then the field is in the interval, too, even if rounding may place it beyond a step.
   HWY_NOINLINE bool on_one_side(int n) {
     const auto all_held = [&] {
       const int corner = cell_data ? 0 : 1;
@@ -286,19 +287,19 @@ class PacketCast {
     return all_held();
   }
 
-  /// What the field may add to products of its changes over a slab, where it leaves the line.
+  /// Bound of the field's deviation from the line in products of its changes over a slab.
   static HWY_INLINE VF spread_of(const Line& line, VF length) {
     return length * line.rho * MulAdd(Abs(line.span), Set(DF(), 0.25f), line.rho);
   }
-  /// What the front may dim the back by more or less than along the line, of the tolerance.
+  /// Bound of the deviation's effect on how the front attenuates the back, relative to the tolerance.
   HWY_INLINE VF dimming_of(const Line& line, VF length) const {
     return length * Set(DF(), current_.uniform().dimming_bound / 9) * (length * line.rho);
   }
 
-  /// A slab too rough for a line: a line, and what the field's bend adds to it to first order in the slab's optical
-  /// depth. False, and nothing added, if what is left may be too much. Where extinction k and colour c are linear in
-  /// the field, light is more by k' c' times the product of its rests, and less by c' k^2 times their covariance with
-  /// the way, as the front dims the back.
+  /// Adds a slab that is too rough for a line as a line plus the effect of the field's bend, to first order in the
+  /// slab's optical depth. Where extinction k and colour c are linear in the field, light increases by k' c' times the
+  /// product of the deviations, and decreases by c' k^2 times their covariance with the position, as the front
+  /// attenuates the back. Returns false, and adds nothing, if the remaining error may be too large.
   HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
     const DF d;
     const UniformLookup& table = current_.uniform();
@@ -335,13 +336,13 @@ class PacketCast {
       note_ramps(current_.uniform(), length, before, rays_.light.transmittance, rays_.notes);
   }
 
-  /// A slab that crosses knots, or is rough.
+  /// Adds a slab that crosses knots or is rough.
   HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
     const MF apart = cast_mixed(packet_, line, live, Set(DF(), static_cast<float>(n)), length, rays_);
     if (!AllFalse(DF(), apart)) cast_stretches(packet_, lines, n, apart, rays_);
   }
 
-  /// Adds the lanes that may meet surfaces in slab n, where they are between `low` and `high`: those that are left.
+  /// Adds the lanes that may meet surfaces in slab n, with their field in [low, high]. Returns the other lanes.
   HWY_NOINLINE MF add_met(int n, VF low, VF high, MF live) {
     const MF met = surfaces_.met(low, high, live);
     const WindowPlace place = place_of(n);
@@ -354,7 +355,7 @@ class PacketCast {
     SurfaceCast<Lookup>(packet_, surfaces_, rays_).cast(path, window, rest, lanes);
   }
 
-  /// A slab in which lanes begin or end, cell data, shaded.
+  /// Adds a slab in which lanes begin or end, a slab of cell data, or a shaded slab.
   HWY_NOINLINE void add_parts(int n) {
     const DF d;
     const WindowPlace place = place_of(n);
@@ -406,15 +407,15 @@ class PacketCast {
   PacketView<Lookup> packet_;
   RayState rays_;
   [[no_unique_address]] Surfaces surfaces_;
-  VF before_;       ///< transmittance up to the chunk
-  bool has_steps_;  ///< of the transfer function, that matter
+  VF before_;       ///< transmittance in front of the chunk
+  bool has_steps_;  ///< whether the transfer function has steps that matter
   VF crossings_;
   float plain_from_, plain_to_;
   bool all_live_;
   std::size_t live_count_;
 };
 
-/// Lanes [ray, ray + Lanes()) of a packet through the chunk.
+/// Casts lanes [ray, ray + Lanes()) of a packet through the chunk.
 template <bool cell_data, class Surfaces, class Window, class Lookup>
 HWY_NOINLINE void cast_lanes(const TileCast<Lookup>& tile, int ray, const Reach& reach, const PacketSlabs& slabs) {
   const DF d;
@@ -459,7 +460,7 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
     PacketSlabs slabs(reach, chunk.box);
-    // Begins where this packet does: what others find must not change its bits.
+    // Starts at this packet's interval, so that its bits do not depend on other packets.
     const int first = chunk.box.first_slab;
     current.begin_at(*chunk.block.at(first, slabs.i_first[first], slabs.j_first[first]));
     const auto cast = [&]<class Window>() HWY_ATTR {

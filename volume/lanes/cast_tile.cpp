@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Where a packet's rays may be in the chunk that begins at first_k; `any` if there are any that it may add to.
+/// Bounds of a packet's rays in the chunk that begins at first_k; `any` is whether light may be added to any of them.
 HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int packet, double first_k, double last_k) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<double> d;
@@ -57,7 +57,7 @@ HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int pack
   return reach;
 }
 
-/// Lays out slabs and slices round all that the packets may meet; false if the transfer function hides all of it.
+/// Lays out slabs and slices around all voxels that the packets may meet; false if all of them are invisible.
 HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach& tile, const ChunkBox& box,
                         SlabBlock& block) {
   const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
@@ -98,7 +98,7 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
 }
 
 HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
-  // A pilot pass counts the work of exact integrals.
+  // A pilot pass measures the work of exact integrals.
   if (chunk.frame.step > 0 && chunk.frame.tally == nullptr) return cast_chunk_in_steps(chunk, rays, counts);
   switch (CL::form_of(*chunk.frame.table)) {
     case CL::TableForm::one_vector:
@@ -110,8 +110,8 @@ HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts&
   }
 }
 
-/// Rays of one axis code through a chunk of the volume. Packets that are not wanted are laid out, as what others find
-/// must not depend on them, but not cast.
+/// Casts rays of one axis code through a chunk of the volume. Packets that are not wanted are laid out, so that the
+/// bits of the others do not depend on them, but not cast.
 void cast_rays(const FrameView& frame, const VoxelBox& voxels, TileState& tile, int code, TileMemory& memory,
                TileCounts& counts) {
   const RayAxes axes = RayAxes::of(code);
@@ -146,7 +146,7 @@ void cast_rays(const FrameView& frame, const VoxelBox& voxels, TileState& tile, 
     for (int p = 0; p < TileRays::packets; ++p) {
       const auto first_k = static_cast<double>(k);
       reach[p].any = false;
-      if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a pilot pass makes no light
+      if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a pilot pass produces no light
       reach[p] = reach_of(frame, rays, p, first_k, first_k + box.slabs);
       if (!reach[p].any) continue;
       all.any = true;

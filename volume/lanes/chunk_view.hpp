@@ -7,14 +7,14 @@
 
 namespace tessera::volume {
 
-/// Where a group of rays may be at both ends of a chunk: bounds of (x, y), voxels. The rays being straight, bounds in
-/// between are straight, too.
+/// Bounds of the (x, y) positions of a group of rays at both ends of a chunk, in voxels. As rays are straight, bounds
+/// in between are linear.
 struct Reach {
   float x_low[2], x_high[2], y_low[2], y_high[2];
   bool any;
 };
 
-/// What a chunk's slabs share.
+/// The data shared by a chunk's slabs.
 struct ChunkView {
   const FrameView& frame;
   const RayAxes axes;
@@ -23,10 +23,10 @@ struct ChunkView {
   const Reach* reach;  ///< by packet
 };
 
-// The kernels of one chunk of 32 slabs, on the best instruction set: what each packet that `reach` has gathers in it.
-// Three for exact integrals, by how many vectors hold a column of the transfer function's table
-// (integrals/integrate_lanes-inl.h), three that they leave frames with surfaces to, and one for steps. They are sources
-// of their own because they take long to compile.
+// The kernels of one chunk of 32 slabs, dispatched to the best instruction set. They accumulate the light of every
+// packet for which `reach` has any rays. Three compute exact integrals, one for each number of vectors in which a
+// column of the transfer function's table is stored (integrals/integrate_lanes-inl.h). They call three others for
+// frames with surfaces. One samples in steps. They are separate sources because they take long to compile.
 
 void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
@@ -36,7 +36,7 @@ void cast_surfaces_two_vectors(const ChunkView& chunk, TileRays& rays, TileCount
 void cast_surfaces_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 
-/// Of a chunk that shows nothing, whose block is empty: pre-integrated steps that begin in it show nothing either.
+/// For an invisible chunk, whose block is not filled: pre-integrated steps that begin in it are invisible too.
 void skip_chunk_in_steps(const ChunkView& chunk, TileRays& rays);
 
 }  // namespace tessera::volume

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interval of the transfer function in which a packet was last; included once per instruction set.
+// The interval of the transfer function that a packet is currently in. Included once per instruction set (Highway's
+// include guard idiom).
 //
-// What      The table's row of that interval, ready for use by all lanes, and whether scalars are in it.
-// How       Slabs that follow each other are mostly in one interval: a comparison with its ends takes the place of a
-//           search in each lane.
-// Accuracy  Where an interval ends at a step of the function the end is moved in by the field's noise
-//           (lane_error_bound.hpp); for samples it is not, where lanes hold these and the step exactly.
+// What      The table's row of that interval, for all lanes, and tests whether scalars are in the interval.
+// How       Consecutive slabs are usually in the same interval, so a comparison with its ends replaces a search in each
+//           lane.
+// Accuracy  Where the interval ends at a step of the function, the end is moved inwards by the field's noise
+//           (lane_error_bound.hpp). For samples it is not moved if lanes represent the samples and the step exactly.
 
 #if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
@@ -26,14 +27,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// The interval of the transfer function in which a packet was last, ready for use.
+/// The interval of the transfer function that a packet is currently in, prepared for lookups.
 class CurrentInterval {
  public:
   HWY_INLINE CurrentInterval(const LaneTable& table, const FrameView& frame) : table_(table), frame_(frame) {
     uniform_.independent = table.emission == scene::Emission::independent;
     set(0);
   }
-  /// Whether all samples of the window are in one interval, for certain, which then is the current one.
+  /// Whether all samples of the window are certainly in one interval, which then becomes the current one.
   template <class Window>
   HWY_INLINE bool holds(const Window& window, float some_sample) {
     if (window.all_in(held_low_, held_high_)) return true;
@@ -47,16 +48,15 @@ class CurrentInterval {
     const float* const knots = table_.column(LaneTable::edge) + 1;
     return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
   }
-  /// Whether [low, high] is in the current interval, and for certain if that ends at a step, in the lanes that are
-  /// live.
+  /// Whether [low, high] is in the current interval in all live lanes, with a margin where the interval ends at a step.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
     const MF below = high < Set(d, guarded_high_);
     return AllFalse(d, AndNot(And(low >= Set(d, guarded_low_), below), live));
   }
-  /// Whether a sample is in the current interval for certain.
+  /// Whether a sample is certainly in the current interval.
   [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
-  /// Makes a sample's interval the current one; that of a blank is the first.
+  /// Makes a sample's interval the current one; the first interval for a blank.
   HWY_INLINE void begin_at(float sample) { move_to(sample == sample ? interval_of(sample) : 0); }
   /// Makes interval n the current one.
   HWY_INLINE void move_to(std::size_t n) {
@@ -76,7 +76,7 @@ class CurrentInterval {
       const LaneErrorBound& bound = *frame_.error_bound;
       if (!bound.step.empty() && bound.step[n] > 0) guarded_low_ += bound.noise;
       if (!bound.step.empty() && bound.step[n + 1] > 0) guarded_high_ -= bound.noise;
-      // Samples that lanes hold exactly are on their side of a step, and so is the field where they all are.
+      // Samples that lanes represent exactly are on their side of a step, and so is the field if all samples are.
       if (bound.sharp[n] == 0) held_low_ = guarded_low_;
       if (bound.sharp[n + 1] == 0) held_high_ = guarded_high_;
       if (!bound.ramp.empty() && bound.ramp[n] > 0)
@@ -105,8 +105,8 @@ class CurrentInterval {
   const FrameView& frame_;
   std::size_t interval_ = 0;
   float low_, high_;
-  float guarded_low_, guarded_high_;  ///< further in by the field's noise where the interval ends at a step
-  float held_low_, held_high_;        ///< the same, but for steps that samples are on one side of for certain
+  float guarded_low_, guarded_high_;  ///< moved inwards by the field's noise where the interval ends at a step
+  float held_low_, held_high_;        ///< the same, except at steps where exact samples need no margin
   bool clear_ = false;
   UniformLookup uniform_;
 };

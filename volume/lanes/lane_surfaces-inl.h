@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Between which values of surfaces the field of each lane is; included once per instruction set.
+// Finds the surfaces' values between which each lane's field is. Included once per instruction set (Highway's include
+// guard idiom).
 //
-// What      Whether lanes may meet an iso-surface where their field is within bounds, and the gap between two values
-//           that a scalar is in.
-// How       The gap that each lane was in last is kept, so that mostly two comparisons answer.
-// Accuracy  Gaps are narrower by the field's noise (SurfaceView::noise) at either end: no surface is missed.
-// Bits      Answers do not depend on the gap that is kept.
+// What      Whether lanes whose field is within bounds may meet an iso-surface, and the gap between two values that
+//           contains a scalar.
+// How       The last gap of each lane is kept, so that usually two comparisons suffice.
+// Accuracy  Gaps are narrowed by the field's noise (SurfaceView::noise) at both ends, so that no surface is missed.
+// Bits      The results do not depend on the stored gaps.
 
 #if defined(TESSERA_VOLUME_LANE_SURFACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_LANE_SURFACES_INL_H_
@@ -33,7 +34,7 @@ HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row
   return GatherIndex(d, row.data(), edge);
 }
 
-/// The gap that a scalar is in (SurfaceView); the first for what is not a number.
+/// The gap that contains a scalar (SurfaceView); the first gap for NaN.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
@@ -43,7 +44,7 @@ HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   return gap;
 }
 
-/// A frame without surfaces.
+/// Used for frames without surfaces.
 struct NoSurfaces {
   explicit HWY_INLINE NoSurfaces(const FrameView&) {}
   HWY_INLINE bool none_between(VF, VF, MF) { return true; }
@@ -53,19 +54,19 @@ struct NoSurfaces {
   }
 };
 
-/// The gap between two surfaces' values in which each lane's field was last, narrower by the field's noise at either
-/// end, and one for all samples of a window. They only make it quick to find that there is no surface: whatever they
-/// are, answers are the same.
+/// The gap between two surfaces' values that contained each lane's field last, narrowed by the field's noise at both
+/// ends, and one gap for all samples of a window. They only accelerate the test that there is no surface; the results
+/// do not depend on them.
 class LaneSurfaces {
  public:
   explicit HWY_INLINE LaneSurfaces(const FrameView& frame)
       : view_(*frame.surfaces), low_(Zero(DF())), high_(Zero(DF())) {}
 
-  /// Whether lanes that are live meet no surface for certain where their field is in [low, high].
+  /// Whether live lanes certainly meet no surface where their field is in [low, high].
   HWY_INLINE bool none_between(VF low, VF high, MF live) {
     return HWY_LIKELY(AllFalse(DF(), outside(low, high, live))) || AllFalse(DF(), met(low, high, live));
   }
-  /// The lanes that may.
+  /// The live lanes that may meet a surface.
   HWY_NOINLINE MF met(VF low, VF high, MF live) {
     const DF d;
     const VI gap = surface_gap(view_, low);
@@ -75,7 +76,7 @@ class LaneSurfaces {
     return outside(low, high, live);
   }
 
-  /// Whether none is where all samples are those of the window.
+  /// Whether certainly no surface is met where all samples are those of the window.
   template <class Window>
   HWY_INLINE bool none_in(const Window& window, float some_sample) {
     if (window.all_in(window_low_, window_high_)) return true;

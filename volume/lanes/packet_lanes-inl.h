@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A packet's rays in one chunk of 32 slabs: where they may be, where each is, and its way through a slab voxel by
-// voxel; included once per instruction set.
+// A packet's rays in one chunk of 32 slabs: their bounds, their positions, and their paths through a slab voxel by
+// voxel. Included once per instruction set (Highway's include guard idiom).
 //
-// What      Along axis k a ray goes from slab to slab; along i and j it is at (x, y) + (bx, by) k.
-// How       |bx|, |by| <= 1: in a slab a ray crosses at most one plane of either other axis. That makes three stretches
-//           at most, each in one voxel.
-// Accuracy  Positions are float, relative to the voxel in which the ray is at the chunk's first plane, from double at
-//           each chunk: 2e-6 voxel at most.
-// Bits      So they depend on ray and chunk only.
-// Ends      Crossings are kept within the part of the slab that counts: no stretch is of negative length.
+// What      Along axis k a ray passes from slab to slab; along i and j it is at (x, y) + (bx, by) k.
+// How       |bx|, |by| <= 1, so in a slab a ray crosses at most one plane of each other axis. This makes at most three
+//           stretches, each in one voxel.
+// Accuracy  Positions are floats relative to the voxel that contains the ray at the chunk's first plane, computed in
+//           double precision for each chunk: the error is at most 2e-6 voxels.
+// Bits      Therefore positions depend on ray and chunk only.
+// Ends      Crossings are clamped to the part of the slab that is in the ray's range: no stretch has a negative length.
 
 #if defined(TESSERA_VOLUME_PACKET_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PACKET_LANES_INL_H_
@@ -34,7 +34,7 @@ struct VoxelRange {
   int first, last;
 };
 
-/// Of `box` those that rays in slab n may be in, which are between `low` and `high` at the chunk's first and last
+/// The voxels of `box` that rays in slab n may be in, for rays between `low` and `high` at the chunk's first and last
 /// plane.
 HWY_INLINE VoxelRange slab_range(const float (&low)[2], const float (&high)[2], int n, const VoxelRange& box) {
   constexpr float each = 1.0f / SlabBlock::slabs, slack = 2e-3f;
@@ -47,30 +47,30 @@ HWY_INLINE VoxelRange slab_range(const float (&low)[2], const float (&high)[2], 
           static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end))};
 }
 
-/// A packet's lanes at one chunk.
+/// A packet's lanes in one chunk.
 struct Lanes {
   VF bx, by, per_bx, per_by;            ///< slopes and their inverses
   VF x, y;                              ///< at the chunk's first plane, relative to voxel (i, j)
-  VF i, j;                              ///< of that voxel, relative to (i_base, j_base)
+  VF i, j;                              ///< that voxel, relative to (i_base, j_base)
   VF i_least, i_most, j_least, j_most;  ///< voxels of the box, relative to (i, j)
   VF k_in, k_out;                       ///< relative to the chunk's first plane
   VF light_view;                        ///< shading: cosine between light and view
-  VF length, bends;                     ///< of the ray per slab; bx by
+  VF length, bends;                     ///< length of the ray per slab; bx by
   int i_base, j_base;
 };
 
-/// A lane's way through one voxel of a slab: the voxel, relative to (i, j) of the chunk's first plane, and where it
-/// begins and ends, 0 to 1 from plane to plane.
+/// A lane's path through one voxel of a slab: the voxel, relative to (i, j) of the chunk's first plane, and where the
+/// path begins and ends, from 0 at the front plane to 1 at the back plane.
 struct Stretch {
   VF i, j, begin, end;
 };
 
-/// A packet's way through a slab.
+/// A packet's path through a slab.
 struct SlabPath {
-  VF k, x, y;             ///< the front plane, and where the rays meet it
-  VF from, to;            ///< the part of the slab that counts
+  VF k, x, y;             ///< the front plane, and the rays' positions there
+  VF from, to;            ///< the part of the slab in the ray's range
   Stretch stretches[3];   ///< front to back
-  VF i_offset, j_offset;  ///< of a voxel in the window
+  VF i_offset, j_offset;  ///< from a voxel to its position in the window
 };
 
 HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_window) {
@@ -82,7 +82,7 @@ HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_windo
   const VF x = MulAdd(k, lanes.bx, lanes.x), y = MulAdd(k, lanes.by, lanes.y);
   const auto cell = [&](VF position, VF slope, VF u, VF least, VF most)
                         HWY_ATTR { return Min(Max(Floor(MulAdd(u, slope, position)), least), most); };
-  // By rounding a ray may seem to cross two planes; the second is at its very end.
+  // Because of rounding, a ray may seem to cross two planes; the second crossing is then at its end.
   const auto next_cell = [&](VF first_cell, VF last_cell)
                              HWY_ATTR { return Min(Max(last_cell, first_cell - one), first_cell + one); };
   const VF i_0 = cell(x, lanes.bx, from, lanes.i_least, lanes.i_most),
@@ -127,7 +127,7 @@ HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_bas
   const auto first_k = static_cast<double>(box.first_k);
   Lanes lanes;
   const VF one = Set(d, 1.0f);
-  // In double up to here.
+  // Computed in double precision, then converted to float.
   HWY_ALIGN float x[most], y[most], i[most], j[most], bx[most], by[most], k_in[most], k_out[most];
   const hn::Rebind<double, hn::Half<DF>> dd;
   const hn::Rebind<float, decltype(dd)> dh;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a packet's lanes share in a chunk: the voxels they may meet slab by slab, and the work they are counted for;
-// included once per instruction set.
+// Data of a chunk that a packet's lanes share: the voxels that they may meet in each slab, and their work for the
+// tally. Included once per instruction set (Highway's include guard idiom).
 //
-// What      By slab the range of voxels along i and j, where the window that holds their corners is in the block, and
-//           whether the range reaches the box's border.
-// How       Rays are straight, so bounds of a packet at the chunk's first and last plane (Reach) bound it between them.
+// What      For each slab, the range of voxels along i and j, the position in the block of the window that contains
+//           their corners, and whether the range reaches the box's border.
+// How       Rays are straight, so the packet's bounds at the chunk's first and last plane (Reach) give bounds in
+//           between.
 
 #if defined(TESSERA_VOLUME_PACKET_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PACKET_SLABS_INL_H_
@@ -27,11 +28,11 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Voxels that a packet may meet, by slab of the chunk, and the windows that hold their corners.
+/// The voxels that a packet may meet in each slab of the chunk, and the windows that contain their corners.
 struct PacketSlabs {
   static constexpr int slabs = SlabBlock::slabs;
   HWY_ALIGN int i_first[slabs], i_last[slabs], j_first[slabs], j_last[slabs];
-  int widest_i = 0, widest_j = 0;  ///< most of last - first
+  int widest_i = 0, widest_j = 0;  ///< largest last - first
   HWY_ALIGN int i_window[slabs], j_window[slabs], front[slabs], back[slabs], border[slabs];
   HWY_ALIGN float origin[slabs];
 
@@ -52,7 +53,7 @@ struct PacketSlabs {
     }
   }
 
-  /// Where the windows lie in the block. They may not reach beyond what both slices hold.
+  /// Computes the positions of the windows in the block. A window must be inside the samples of both slices.
   template <class Window>
   HWY_INLINE void place_windows(const SlabBlock& block, int slab_count) {
     constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
@@ -75,7 +76,7 @@ struct GroupWork {
   VF k_out, depth_before;
   std::uint64_t samples_before;
 
-  /// The work before slab `next`, or where the packet stopped.
+  /// Adds the work before slab `next`, or up to where the packet stopped.
   HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
                            const Progress& progress, const TileCounts& counts) const {
     const DF d;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What float lanes may err by steps and ramps of the transfer function (lane_error_bound.hpp), noted by rays on their
-// way; included once per instruction set.
+// Errors of light in float lanes near steps and ramps of the transfer function (lane_error_bound.hpp), recorded along
+// rays. Included once per instruction set (Highway's include guard idiom).
 //
-// What      Of each stretch of a ray inside a voxel the light that may be too much or too little, as field and places
-//           are rounded.
-// How       On the wrong side of a step a ray is for a length of noise / |slope| of the field, or of the root of 2
-//           noise / |second derivative| where it is level (Touch); a ramp errs as long as the ray is on it. Both are
-//           first bounded by the light that gets through. Where that is too much, Excess finds more closely what the
-//           excess of matter changes, by Cauchy and Schwarz.
-// Accuracy  tests/volume/steep_function_test.cpp holds what comes of it against double precision.
+// What      For each stretch of a ray inside a voxel, a bound of the error of its light due to rounding of field and
+//           positions.
+// How       A ray is on the wrong side of a step for a length of noise / |slope| of the field, or of the square root of
+//           2 noise / |second derivative| where the field is level (Touch). A ramp contributes for as long as the ray
+//           is on it. Both are first bounded by the transmitted light. Where that bound is too large, Excess computes a
+//           closer one by the inequality of Cauchy and Schwarz.
+// Accuracy  tests/volume/steep_function_test.cpp compares the result with double precision.
 
 #if defined(TESSERA_VOLUME_PIECE_ERRORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PIECE_ERRORS_INL_H_
@@ -36,32 +36,33 @@ struct UniformLookup {
   using Index = int;
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
-  float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
-  float ramp, ramp_steady, ramp_color;  ///< LaneErrorBound's
-  float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
+  float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c, divided by the tolerance
+  float ramp, ramp_steady, ramp_color;  ///< values of LaneErrorBound
+  float dimming_bound, extinction;      ///< bounds of |c'| k^2 (independent: |c'| k) per tolerance, and of k
   HWY_INLINE VF at(int column, Index) const { return Set(DF(), row[column]); }
 };
 
-/// A row of LaneErrorBound at intervals or edges of the lanes that are wanted; zero elsewhere.
+/// A row of LaneErrorBound at the intervals or edges of the wanted lanes; zero in other lanes.
 HWY_INLINE VF bound_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
   return IfThenElseZero(wanted, GatherIndex(d, row.data(), IfThenElseZero(RebindMask(DI(), wanted), at)));
 }
 
-/// The intervals of the transfer function that lanes are in, those that are wanted, and what is known of errors there.
+/// The intervals of the transfer function that lanes are in, the wanted lanes, and the error bounds.
 template <class Lookup>
 struct IntervalLanes {
   const Lookup& table;
   typename Lookup::Index index;
   VI interval;
   MF wanted;
-  const LaneErrorBound* bound;  ///< null: not asked for
+  const LaneErrorBound* bound;  ///< null: not needed
 
   /// A row of the bound at the intervals.
   HWY_INLINE VF row(const std::vector<float>& of) const { return bound_row(of, interval, wanted); }
 };
 
-/// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
+/// Records the errors of a stretch due to the ramps of its intervals. Of an opaque stretch, the colour's error is
+/// visible at its front.
 template <class Lookup>
 HWY_INLINE void note_ramps(const IntervalLanes<Lookup>& in, VF length, VF before, VF behind, RayNotes& notes) {
   if (in.bound->ramp.empty()) return;
@@ -81,16 +82,16 @@ HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF 
   notes.error_bound = MulAdd(through, Set(d, table.ramp_steady), notes.error_bound);
 }
 
-/// Where the side of a step that the cubic is on is uncertain: for how long, and the steps' edges.
+/// A part of the cubic where the side of a step is uncertain: its length, and the steps' edges.
 struct Touch {
   MF near;
   VI edge;
   VF length;
 };
 
-/// Whether `at`, an end of an interval, a turn or a crossing, is near an edge of its interval. Field and place are
-/// uncertain by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|.
-/// `length` is the whole cubic's. False, and `touch` not set, if no lane is near.
+/// Finds lanes where `at`, an end of an interval, an extremum or a crossing, is near an edge of its interval. Its
+/// position is uncertain by noise / |slope|, or where the cubic is level by the square root of 2 noise / |second
+/// derivative|. `length` is that of the whole cubic. Returns false, and does not set `touch`, if no lane is near.
 template <class Lookup>
 HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                         Touch& touch) {
@@ -111,18 +112,18 @@ HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const C
   return true;
 }
 
-/// What a stretch may err, as seen from where its light is measured.
+/// Error bounds of a stretch, as seen from where its light is measured.
 struct StretchErrors {
   VF steps, ramps;
-  VF left;  ///< by pieces that were not made small enough
+  VF left;  ///< from pieces that could not be made small enough
 };
 
-/// Optical depths w that are too much or too few at places to which T gets through, of a medium of colour c, where what
-/// is in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
-/// w |a - E|, and that is less than the root of (sum of w) (sum of w |a - E|^2) by Cauchy and Schwarz.
+/// Excess or missing optical depths w of media of colour c, at positions with transmittance T and light L in front of
+/// them. With a = T c + L and E the light of the whole stretch, they change E by less than the sum of w |a - E|. By
+/// Cauchy and Schwarz, that is less than the square root of (sum of w) (sum of w |a - E|^2).
 struct Excess {
-  VF depth, ramps, red, green, blue, square;  ///< sums of w, of those of ramps, of w a and of w |a|^2
-  VF beside_steps, beside_ramps;              ///< light that differs whatever is behind
+  VF depth, ramps, red, green, blue, square;  ///< sums of w, of w of ramps, of w a and of w |a|^2
+  VF beside_steps, beside_ramps;              ///< differences of light that do not depend on what is behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
     const VF a[3] = {MulAdd(through, color[0], progress.red), MulAdd(through, color[1], progress.green),
@@ -131,7 +132,7 @@ struct Excess {
     red = MulAdd(w, a[0], red), green = MulAdd(w, a[1], green), blue = MulAdd(w, a[2], blue);
     square = MulAdd(w, MulAdd(a[0], a[0], MulAdd(a[1], a[1], a[2] * a[2])), square);
   }
-  /// Of the whole stretch, by the depths alone.
+  /// The error of the whole stretch due to the depths alone.
   HWY_INLINE VF error(const Progress& e, const LaneErrorBound& bound) const {
     const DF d;
     const VF across = MulAdd(red, e.red, MulAdd(green, e.green, blue * e.blue));
@@ -152,7 +153,7 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
                                           table.at(LaneTable::red + 2 * c, index));
 }
 
-/// Adds what a step may err that the cubic is on, or nearly, at a place: a bound.
+/// Adds a bound of the error of a step that the cubic touches or nearly touches at a position.
 template <class Lookup>
 HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                                  const Progress& progress, StretchErrors& errors) {
@@ -162,7 +163,7 @@ HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c
   const VF error = Min(touch.length * weight, Set(DF(), in.bound->most));
   errors.steps = MulAdd(error, progress.transmittance, errors.steps);
 }
-/// The same, closely.
+/// Adds the same error, bounded closely.
 template <class Lookup>
 HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                                  const Progress& progress, Excess& excess) {
@@ -179,7 +180,8 @@ HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c
   excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
 }
 
-/// Adds what a piece of a ramp that ends at s_end errs, closely: of `length`, to which `before` got through.
+/// Adds the error, bounded closely, of a piece of a ramp that ends at s_end: of `length`, with transmittance `before`
+/// at its front.
 template <class Lookup>
 HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, VF length, VF before,
                                   const Progress& progress, Excess& excess) {
@@ -194,7 +196,8 @@ HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, 
   excess.beside_ramps = MulAdd(seen, steep.row(steep.bound->ramp_color), excess.beside_ramps);
 }
 
-/// Shares the error of depths out in proportion to these; the light that differs in addition is each one's own.
+/// Distributes the error of depths in proportion to the depths; the additional differences of light are assigned
+/// directly.
 HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
                                  StretchErrors& errors) {
   const DF d;

@@ -13,7 +13,7 @@ namespace tessera::volume {
 PreintegratedTable::PreintegratedTable(const integrals::LaneTable& function, float low_scalar, float high_scalar,
                                        float step, int size_)
     : size(size_), low(low_scalar) {
-  // A constant field still needs two places.
+  // A constant field needs a positive width, too.
   const float width = std::max(high_scalar - low_scalar, 1.0f);
   scale = static_cast<float>(size - 1) / width;
   const auto n = static_cast<std::size_t>(size);

@@ -7,18 +7,19 @@
 
 namespace tessera::volume {
 
-/// Optical depth and light of one step of a ray by the scalars at its ends, the field being linear between them.
+/// Optical depth and light of one step of a ray, indexed by the scalars at its ends; the field is linear in between.
 ///
-/// Grid      size x size entries, the front's scalar by row, from `low` on, 1 / scale apart, in lane scalars.
-/// Channels  0 optical depth; 1 to 3 red, green, blue that leave the step's front. Each entry is the exact integral.
+/// Grid      size x size entries, one row per front scalar, from `low` in steps of 1 / scale, in lane scalars.
+/// Channels  0: optical depth; 1 to 3: red, green and blue that leave the step's front. Each entry is the exact
+///           integral.
 struct PreintegratedTable {
   static constexpr int least_size = 512, most_size = 2048;
 
   /// `step` in the table's length unit. low < high, the field's range.
   PreintegratedTable(const integrals::LaneTable& function, float low_scalar, float high_scalar, float step, int size_);
 
-  /// Entries a side at which the closest knots are sixteen entries apart, so far as `most_size` goes: between entries
-  /// the table is bilinear, and cuts peaks that lie between them.
+  /// Number of entries per side for which the closest knots are sixteen entries apart, up to `most_size`. The table is
+  /// bilinear between entries, and therefore cuts off peaks between them.
   static int size_for(const integrals::LaneTable& function, float low_scalar, float high_scalar);
 
   [[nodiscard]] const float* channel(int c) const {

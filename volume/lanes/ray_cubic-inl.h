@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The field along a stretch of a ray in one voxel, a cubic a lane: where it turns and where it crosses a value;
-// included once per instruction set.
+// The field along a stretch of a ray in one voxel, one cubic per lane: its extrema and its crossings of a value.
+// Included once per instruction set (Highway's include guard idiom).
 //
-// What      The trilinear field of a voxel along a ray is a cubic, of v in [0, 1] over the stretch: known by its values
-//           at the ends and in the middle, and its leading coefficient, p_3.
-// How       It turns at the roots of its slope, in the form without cancellation: where its slope's Bezier coefficients
-//           are of one sign it turns nowhere, which most do. Between turns it is monotone, and Newton's method, kept
-//           within a bracket, finds where it crosses a value.
-// Accuracy  A crossing is right to 1e-6 of the stretch where the slope is known that well: near a turn, where the cubic
-//           is level, to 3e-4 (lane_error_bound.hpp).
-// Bits      A lane's numbers do not depend on the other lanes but by how many steps Newton's method takes.
-// Ends      Lanes that are not active are the cubic 0.
+// What      The trilinear field of a voxel along a ray is a cubic in v in [0, 1] over the stretch. It is determined by
+//           its values at the ends and in the middle, and its leading coefficient p_3.
+// How       Extrema are the roots of the derivative, in the form without cancellation. If the Bezier coefficients of
+//           the derivative have the same sign, as for most cubics, there are none. Between extrema the cubic is
+//           monotonic, and Newton's method, restricted to a bracket, finds where it crosses a value.
+// Accuracy  A crossing is accurate to 1e-6 of the stretch where the slope is known that well; near an extremum, where
+//           the cubic is level, to 3e-4 (lane_error_bound.hpp).
+// Bits      A lane's numbers depend on other lanes only through the number of Newton steps.
+// Ends      In lanes that are not active the cubic is 0.
 
 #if defined(TESSERA_VOLUME_RAY_CUBIC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_CUBIC_INL_H_
@@ -27,8 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// One stretch a lane. The field at its ends and middle, the cubic's leading coefficient over it, and its length (zero:
-/// nothing there). Where in the slab it begins, and how much of the slab it takes.
+/// One stretch per lane: the field at its ends and middle, the cubic's leading coefficient, the length (zero if there
+/// is none), the position in the slab where it begins, and its extent in the slab.
 struct Piece {
   VF s_0, s_mid, s_1, p_3, length, begin, extent;
 };
@@ -43,12 +43,12 @@ struct Cubic {
   }
 };
 
-/// A place of a cubic, and its value there.
+/// A position on a cubic, and its value there.
 struct CubicPlace {
   VF v, s;
 };
 
-/// Places of the cubic's extrema in (0, 1), 1 where there are none.
+/// Positions of the cubic's extrema in (0, 1), 1 where there are none.
 HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f), three = Set(d, 3.0f);
@@ -64,7 +64,7 @@ HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   second = Max(a, b);
 }
 
-/// v between two places where the cubic, monotone there, has the value `level`, between theirs.
+/// A v between two positions at which the cubic, monotonic between them, has the value `level`.
 HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicPlace& to, VF level, MF wanted) {
   const DF d;
   const VF half = Set(d, 0.5f);
@@ -74,14 +74,14 @@ HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicP
   for (int step = 0; step < 12; ++step) {
     const VF excess = c.at(v) - level;
     const MF above = excess > Zero(d);
-    // A place on the far side becomes the bracket's end.
+    // A position on the far side becomes the end of the bracket.
     const MF beyond = Xor(above, Not(rises));
     high = IfThenElse(beyond, v, high);
     low = IfThenElse(beyond, low, v);
     VF next = v - excess / c.slope(v);
     const MF kept = And(next >= low, next <= high);
     next = IfThenElse(kept, next, half * (low + high));
-    // Newton's method squares its error: after a step of 1e-3 what is left is about 1e-6.
+    // Newton's method squares its error: after a step of 1e-3 the error is about 1e-6.
     const VF step_done = IfThenElse(kept, Set(d, 1e-3f), Set(d, 1e-6f));
     const MF moving = And(wanted, Abs(next - v) > step_done);
     v = next;
@@ -104,7 +104,7 @@ HWY_INLINE Cubic cubic_of(const Piece& piece, MF active) {
   return c;
 }
 
-/// Whether a cubic does not turn in [0, 1] for certain: its slope's Bezier coefficients are of one sign.
+/// Whether a cubic certainly has no extremum in [0, 1]: the Bezier coefficients of its derivative have the same sign.
 HWY_INLINE MF is_monotone(const Cubic& c) {
   const DF d;
   const VF zero = Zero(d);
@@ -113,14 +113,14 @@ HWY_INLINE MF is_monotone(const Cubic& c) {
   return Not(And(most > zero, least < zero));
 }
 
-/// A cubic's turns in (0, 1), and its end: 1 where there are none. Between two of them it is monotone.
+/// A cubic's extrema in (0, 1); 1 where there are none. It is monotonic between consecutive ones.
 struct Turns {
   VF first, second;
 
   HWY_INLINE Turns(const Cubic& c, MF active) : first(Set(DF(), 1.0f)), second(first) {
     if (!AllFalse(DF(), AndNot(is_monotone(c), active))) find_extrema(c, first, second);
   }
-  /// The next turn behind v, or the end.
+  /// The next extremum behind v, or the end.
   HWY_INLINE VF after(VF v) const {
     return IfThenElse(v < first, first, IfThenElse(v < second, second, Set(DF(), 1.0f)));
   }

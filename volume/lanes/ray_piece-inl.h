@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of one stretch of a ray inside one voxel, a lane each; included once per instruction set.
+// The light of one stretch of a ray inside one voxel, one per lane. Included once per instruction set (Highway's
+// include guard idiom).
 //
-// Field     Along a ray the trilinear field is a cubic: with v in [0, 1] over the stretch it is a straight line between
-//           its ends, s_0 + v (s_1 - s_0), and a rest of mean m = (2 s_mid - s_0 - s_1) / 3, which Simpson's rule gives
-//           exactly. The rest is b-shaped, -4 b ((v - 1/2)^2 - 1/4) with b = 3 m / 2, and odd,
-//           p_3 v (v - 1/2) (v - 1).
-// Integral  Within one interval of the transfer function extinction and colour are linear in s. The line is moved by m,
-//           so that optical depth is that of the cubic, and integrated exactly (integrals/integrate_lanes-inl.h).
-// Error     What is left of the rest, r, has mean zero and is of even or odd form, so its products with constant, and
-//           of the even part with linear, terms vanish. There stay, per colour, |k' c'| l (4 b^2 / 45 + |b p_3| / 20
-//           + |p_3 (s_1 - s_0)| / 60) from the product of extinction and colour, |k'|^2 c l^2 |r| (|s_1 - s_0| +
-//           |r|) / 30 from how the rest shifts light and shadow inside the voxel. Both are below
+// What      The integral of light and optical depth over a stretch on which the field is the cubic of a trilinear
+//           voxel.
+// How       With v in [0, 1] over the stretch, the cubic is a straight line between its ends, s_0 + v (s_1 - s_0), plus
+//           a deviation with the mean m = (2 s_mid - s_0 - s_1) / 3, which Simpson's rule gives exactly. The deviation
+//           has an even part -4 b ((v - 1/2)^2 - 1/4) with b = 3 m / 2, and an odd part p_3 v (v - 1/2) (v - 1). Within
+//           one interval of the transfer function, extinction and colour are linear in s. The line is shifted by m, so
+//           that its optical depth is that of the cubic, and integrated exactly (integrals/integrate_lanes-inl.h). A
+//           stretch that leaves its interval is divided where the cubic crosses the knot (ray_cubic-inl.h).
+// Accuracy  The remaining deviation r has mean zero and is even or odd, so its products with constant terms, and those
+//           of the even part with linear terms, vanish. The remaining errors per colour are
+//             |k' c'| l (4 b^2 / 45 + |b p_3| / 20 + |p_3 (s_1 - s_0)| / 60)
+//           from the product of extinction and colour, and
+//             |k'|^2 c l^2 |r| (|s_1 - s_0| + |r|) / 30
+//           because the deviation moves light and shadow inside the voxel. Both are below
 //             l rho (rho + 0.3 |s_1 - s_0|) (0.1 |k' c'| + 0.03 |k'|^2 c l),  rho = |b| + |p_3| / 4.
-//           Light of the front dims that of the back, so colour's own rest counts though k be constant: T falls by k l,
-//           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
-//           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
-// Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
-//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (lane_error_bound.hpp).
+//           The front attenuates the light of the back, so the deviation of the colour counts even if k is constant: T
+//           falls by k l, and its products with the odd and the even part leave
+//             |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
+//           Where the sum exceeds the tolerance the stretch is halved, which reduces the bound to an eighth or less.
+// Ends      Stretches with NaN (blank) samples add nothing.
 
 #if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_
@@ -38,12 +43,12 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// The bounds of an interval of the transfer function, already divided by the tolerance.
+/// The error bounds of an interval of the transfer function. All but the extinction are divided by the tolerance.
 struct RoughnessBounds {
   VF product, shadow, dimming, extinction;
 };
 
-/// What a stretch errs, of the tolerance; see Error above.
+/// The error of a stretch relative to the tolerance; see Accuracy above.
 HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
   const DF d;
   const VF odd = Abs(p_3), even = Abs(m);
@@ -56,7 +61,7 @@ HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds&
   return length * error;
 }
 
-/// Adds the stretches if they are smooth enough; false, and nothing added, if not.
+/// Adds the stretches if they are smooth enough; otherwise adds nothing and returns false.
 template <bool cell_data>
 HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Progress& progress) {
   const DF d;
@@ -74,7 +79,7 @@ HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Prog
   return true;
 }
 
-/// At scalar s of an interval.
+/// The extinction at scalar s of an interval.
 template <class Lookup>
 HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, VF s) {
   const VF half = MulAdd(table.at(LaneTable::half_extinction_slope, index), s - table.at(LaneTable::base, index),
@@ -82,7 +87,7 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return half + half;
 }
 
-/// How much extinction and colour change with the scalar, at most, in the interval that each lane is in.
+/// Upper bounds of the slopes of extinction and colour in each lane's interval.
 struct FunctionSlopes {
   VF extinction, color;
 };
@@ -94,12 +99,14 @@ HWY_INLINE FunctionSlopes slopes_in(const Lookup& table, typename Lookup::Index 
           Max(Max(slope(LaneTable::red_slope), slope(LaneTable::green_slope)), slope(LaneTable::blue_slope))};
 }
 
-/// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
+/// Largest number of times that a stretch is halved; 4096 parts of an optical depth of 1e4 are still thin.
 constexpr int most_halvings = 12;
 
-/// Stretches that cross knots, are rough, or whose lanes are in different intervals, and what they may err: a bound, or
-/// `closely`, where `progress` is that of the stretch alone. NaN samples are blank.
-// Long: a round's values stay in registers. With its steps as inlined functions a frame takes 11 % longer (AVX-512).
+/// Adds stretches that cross knots, are rough, or whose lanes are in different intervals. Returns a bound of their
+/// errors, or a closer one if `closely`, where `progress` is that of the stretch alone. Lanes with NaN (blank) samples
+/// add nothing.
+// Long: the values of a round stay in registers. With its steps as inlined functions a frame takes 11 % longer
+// (AVX-512).
 template <bool closely, class Lookup>
 HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
                                       Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
@@ -118,7 +125,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   const float* const ramps =
       frame.error_bound != nullptr && !frame.error_bound->ramp.empty() ? frame.error_bound->ramp.data() : nullptr;
   VF v = zero, s = c.p_0;
-  // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
+  // Each round ends at a knot, an extremum, a halving or the stretch's end; most functions have few knots per stretch.
   for (int round = 0; round < 4096; ++round) {
     const VF turn = turns.after(v);
     const VF s_turn = IfThenElse(turn == one, s_1, c.at(turn));
@@ -137,21 +144,21 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     RoughnessBounds bounds;
     bounds.product = table.independent ? zero : Set(d, 0.1f) * (slope.extinction * slope.color) * per_tolerance;
     bounds.shadow = slope.extinction * slope.extinction * Set(d, 0.03f * frame.largest_color) * per_tolerance;
-    // What is dimmed already needs no care: behind 14 optical depths any of it is right.
+    // Attenuated colour needs less accuracy: behind 14 optical depths any value is accurate enough.
     const VF seen = per_tolerance * (slope.color * progress.transmittance);
     VF m, length;
     for (int halvings = 0;; ++halvings) {
       const VF extent = end - v, middle = MulAdd(half, extent, v), s_middle = c.at(middle);
       m = (s_middle + s_middle - (s + s_end)) * Set(d, 1 / 3.0f);
       length = IfThenElseZero(active, extent * piece.length);
-      // Between two places where the cubic does not turn, extinction is largest at one of them.
+      // Between two positions without an extremum in between, the extinction is largest at one of them.
       bounds.extinction = Max(extinction_at(table, index, s), extinction_at(table, index, s_end));
       bounds.dimming = seen * (table.independent ? bounds.extinction : bounds.extinction * bounds.extinction);
       const VF error = roughness(length, m, c.p_3 * (extent * (extent * extent)), s_end - s, bounds);
       const MF rough = error > one;
       if (AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
-        // What is still not smooth counts as it is seen.
+        // A part that is still not smooth counts as an error as large as it is visible.
         const VF capped = Min(error * Set(d, frame.piece_tolerance), one);
         errors.left = MulAdd(IfThenElseZero(rough, capped), progress.transmittance, errors.left);
         break;
@@ -175,7 +182,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     note_first_light(progress, MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(has_steps)) add_step({end, s_end});
     if (ramps != nullptr) {
-      // Lanes that are done have an interval and no length.
+      // Lanes that are finished have an interval, but no length.
       const VF ramp = GatherIndex(d, ramps, interval);
       if (!closely) {
         errors.ramps = MulAdd(length * before, ramp, errors.ramps);
@@ -188,13 +195,13 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     active = And(active, v < one);
     if (AllFalse(d, active)) break;
   }
-  // What 4096 rounds did not reach counts as an error.
+  // The part not reached in 4096 rounds counts as an error.
   errors.left = errors.left + IfThenElseZero(active, progress.transmittance);
   if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
   return errors;
 }
 
-/// Adds stretches that cross knots, are rough, or whose lanes are in different intervals, and notes what they may err.
+/// Adds stretches that cross knots, are rough, or whose lanes are in different intervals, and records their errors.
 template <class Lookup>
 HWY_INLINE void add_any(const Lookup& table, const FrameView& frame, const Piece& piece, Progress& progress,
                         RayNotes& notes, std::uint64_t& pieces) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays of a tile in index space; included once per instruction set (Highway's include guard idiom).
+// Rays of a tile in index space. Included once per instruction set (Highway's include guard idiom).
 //
-// What      Of each ray of one axis code: its places a + b k along axes i and j, and the planes k between which it is
-//           in the volume, in the view's range and on the kept side of clips.
-// How       In double precision, by maps from pixels to origins and directions that are linear (PixelRays).
-// Accuracy  Rays that run in a plane of the lattice, or within 1e-9 voxel of one, are put on the side that they would
-//           be on if they were shifted by a hair of a pixel, so that rounding does not choose.
+// What      For each ray of one axis code: its positions a + b k along axes i and j, and the interval of k in which it
+//           is in the volume, in the view's depth range and on the kept side of clip planes.
+// How       In double precision, by linear maps from pixels to origins and directions (PixelRays).
+// Accuracy  Rays in a lattice plane, or within 1e-9 voxels of one, are moved to the side that they would be on if they
+//           were shifted by an infinitesimal part of a pixel, so that the side does not depend on rounding.
 // Ends      k_in >= k_out where a ray has another axis code or misses the volume.
 
 #if defined(TESSERA_VOLUME_RAY_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -27,7 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Axis along which a direction goes most, the lowest of equals, times two, plus one if downwards.
+/// The axis with the largest component of a direction (the lowest of equal ones), times two, plus one if it is
+/// negative.
 HWY_INLINE int axis_code(double x, double y, double z) {
   const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   if (ax >= ay && ax >= az) return x < 0 ? 1 : 0;
@@ -48,19 +49,20 @@ HWY_INLINE unsigned axis_codes(const PixelRays& rays, int x0, int y0) {
   return codes;
 }
 
-/// Voxels that a ray in a plane of the lattice may be off it, or leave it by: what rounding makes of views along axes.
+/// In voxels: a ray that stays this close to a lattice plane counts as being in the plane. Covers rounding in views
+/// along axes.
 constexpr double in_plane_within = 1e-9;
 
-/// Where such rays go instead, voxels along an axis: to the side that they would be on if they were shifted by (e, e^2)
-/// pixel, e infinitely small. Below a plane by a float's last place before 1, as places are floats in [0, 1) within a
-/// voxel; above it by what doubles of 65,536 voxels still resolve.
+/// The offset of these rays in voxels along an axis: to the side that they would be on if they were shifted by (e, e^2)
+/// pixels for an infinitesimal e. The offset below a plane is a float's last place before 1, as positions are floats in
+/// [0, 1) within a voxel; the offset above it is the resolution of doubles at 65,536 voxels.
 HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axis) {
   const double by_x = perspective ? rays.direction_x[axis] : rays.origin_x[axis],
                by_y = perspective ? rays.direction_y[axis] : rays.origin_y[axis];
   return (std::abs(by_x) > 1e-9 * std::abs(by_y) ? by_x : by_y) < 0 ? -0x1p-24 : 0x1p-36;
 }
 
-/// Whether no ray of the tile runs in a plane across an axis: none is nearly level with it.
+/// Whether no ray of the tile can be in a lattice plane across an axis, because none is nearly parallel to it.
 HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
   double least = 0, most = 0, largest = 0;
   for (int corner = 0; corner < 4; ++corner) {
@@ -70,11 +72,11 @@ HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, i
     least = corner == 0 ? d[axis] : std::min(least, d[axis]), most = corner == 0 ? d[axis] : std::max(most, d[axis]);
     largest = std::max({largest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   }
-  // Rays go half a voxel and more.
+  // Rays extend over half a voxel at least.
   return std::max(least, -most) > 4 * in_plane_within * largest;
 }
 
-/// Puts rays a + b k that run in a plane of the lattice `side` off it; `reach`: farthest of k from their origin.
+/// Moves rays a + b k that are in a lattice plane by `side`. `reach`: the largest |k| relative to their origin.
 template <class V>
 HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -85,7 +87,7 @@ HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
   b = IfThenElse(in_plane, Zero(d), b);
 }
 
-/// Cuts [in, out] to where a + b k is in [0, end].
+/// Clips [in, out] to where a + b k is in [0, end].
 template <class V>
 HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -100,7 +102,7 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   out = IfThenElse(outside, Set(d, -1.0), out);
 }
 
-/// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side given by `inside`.
+/// Clips [in, out] to where a + b k >= 0. `inside` determines the side of rays that are in this plane.
 template <class V>
 HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -116,7 +118,7 @@ HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   out = IfThenElse(And(level, side < zero), Set(d, -1.0), out);
 }
 
-/// On which side of a plane rays in it count, by the rule of side_of_plane().
+/// The side of rays in a clip plane, by the rule of side_of_plane().
 HWY_INLINE bool is_inside(const PixelRays& rays, bool perspective, const KeptSide& kept) {
   double by_x = 0, by_y = 0;
   for (int a = 0; a < 3; ++a) {
@@ -126,7 +128,7 @@ HWY_INLINE bool is_inside(const PixelRays& rays, bool perspective, const KeptSid
   return (std::abs(by_x) > 1e-9 * std::abs(by_y) ? by_x : by_y) > 0;
 }
 
-/// Lays the tile's rays of one axis code out for the kernels; those of others are empty. The light is left alone.
+/// Sets up the tile's rays of one axis code for the kernels; rays of other codes are empty. Does not change the light.
 HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
   const PixelRays& rays = *frame.rays;
   const RayAxes axes = RayAxes::of(code);
@@ -154,7 +156,7 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
     const auto dk = Abs(dk_signed), ok = axes.mirrored ? set(end_k) - o_k : o_k;
     auto here = zero == zero;
     if (perspective) {
-      // As axis_code() has it: the lowest of equal axes.
+      // As in axis_code(): the lowest of equal axes.
       const auto not_less = [&](auto other, int axis)
                                 HWY_ATTR { return axes.k < axis ? dk >= Abs(other) : dk > Abs(other); };
       const auto signed_right = axes.mirrored ? dk_signed < zero : dk_signed >= zero;
@@ -184,7 +186,7 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
     const auto length = Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one))) * per_k * set(1 / frame.length_unit);
     if (frame.shading != nullptr) {
       const double(&l)[3] = frame.shading->light_eye;
-      // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the image.
+      // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, as y points down the image.
       const auto towards = NegMulAdd(tx, set(l[0]), MulAdd(ty, set(l[1]), set(l[2])));
       const auto cosine = towards / Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one)));
       Store(DemoteTo(hn::Rebind<float, decltype(d)>(), cosine), hn::Rebind<float, decltype(d)>(), out.light_view + ray);

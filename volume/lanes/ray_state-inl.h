@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a packet's rays have gathered on their way through a chunk; included once per instruction set.
+// The accumulated state of a packet's rays in a chunk. Included once per instruction set (Highway's include guard
+// idiom).
 //
-// What      Of each lane its light since the chunk's front, where that begins, and a bound of its error.
+// What      For each lane: its light since the chunk's front, the position where light begins, and a bound of the
+//           error.
 
 #if defined(TESSERA_VOLUME_RAY_STATE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_STATE_INL_H_
@@ -21,15 +23,15 @@ namespace HWY_NAMESPACE {
 
 using CL::lanes::Progress;
 
-/// What is noted of each ray on its way.
+/// Records of each ray that are updated along its path.
 struct RayNotes {
   VF first;        ///< where light begins, in slabs from the chunk's first
-  MF seen;         ///< whether it has
-  VF error_bound;  ///< errors that may be (lane_error_bound.hpp), as seen from the chunk's front
-  VF rough;        ///< squares of those that roundings make, each its own
+  MF seen;         ///< whether light has begun
+  VF error_bound;  ///< possible errors (lane_error_bound.hpp), as seen from the chunk's front
+  VF rough;        ///< sum of squares of independent rounding errors
 };
 
-/// A ray a lane: its light since the chunk's front, what is noted of it, and what its tile counts.
+/// One ray per lane: its light since the chunk's front, its records, and the counts of its tile.
 struct RayState {
   Progress light;
   RayNotes notes;

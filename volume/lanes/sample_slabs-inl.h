@@ -1,14 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packets of rays through one chunk of slabs, a step at a time: `sampled` and `preintegrated`; included once per
-// instruction set.
+// Casts packets of rays through one chunk of slabs in steps, for `sampled` and `preintegrated`. Included once per
+// instruction set (Highway's include guard idiom).
 //
-// Steps    Along each ray from where it enters the volume, all of one length but the last, which ends where the ray
-//          leaves. Step n of a ray belongs to the chunk that holds its place: its middle (sampled), its end
-//          (preintegrated). The place is the same double in either chunk, so none is taken twice or left out.
-// Sampled  one sample in the middle; extinction and colour are taken as constant over the step.
-// Pre-integrated  Engel, Kraus, Ertl, "High-Quality Pre-Integrated Volume Rendering Using Hardware-Accelerated Pixel
-//          Shading" (2001), section 3: optical depth and light of a step between two scalars from a table, bilinear. A
-//          last, shorter step takes its share of the optical depth, and of the light in proportion to its opacity.
+// What      The light that each ray accumulates in the chunk, composited behind its previous light (TileRays).
+// How       Steps begin where a ray enters the volume. All have the same length except the last, which ends where the
+//           ray leaves. A step belongs to the chunk that contains its position: its middle (sampled) or its end
+//           (preintegrated). The position is the same double in every chunk, so no step is done twice or omitted.
+//
+//             enters    step 0    step 1    step 2   leaves
+//             |---------|---------|---------|-----|       + middle: sampled
+//                  +         +         +       +
+//             >         >         >         >     >       > ends: preintegrated; the first is where the ray enters
+//
+//           Sampled: one sample in the middle; extinction and colour are assumed constant over the step. Pre-integrated
+//           (Engel, Kraus, Ertl, "High-Quality Pre-Integrated Volume Rendering Using Hardware-Accelerated Pixel
+//           Shading", 2001, section 3): optical depth and light of a step between two scalars are looked up in a table
+//           with bilinear interpolation. The table is made for the full step length, so a shorter last step is
+//           integrated exactly.
+// Accuracy  That of the method: it depends on the step length and, for preintegrated, on the table's resolution
+//           (preintegrated_table.hpp). No error bounds are recorded.
+// Bits      A ray's bits depend on the ray and the chunks alone, not on the other lanes.
+// Ends      A step with a blank (NaN) sample is empty. Rays end below the least transmittance. Hidden chunks are not
+//           sampled: skip_chunk() carries NaN as the scalar at the end of their last step.
 
 #if defined(TESSERA_VOLUME_SAMPLE_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SAMPLE_SLABS_INL_H_
@@ -30,9 +43,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// The steps of one ray.
 struct RaySteps {
-  double k_in, each, last;  ///< where it enters, length of a step and of the last one, in k
+  double k_in, each, last;  ///< where the ray enters, length of a step and of the last one, in units of k
   std::int64_t count;
 
   HWY_INLINE RaySteps(double k_in_, double k_out, double each_)
@@ -45,7 +57,7 @@ struct RaySteps {
     const double begin = k_in + static_cast<double>(n) * each, length = n == count - 1 ? last : each;
     return at_end ? begin + length : begin + 0.5 * length;
   }
-  /// Steps whose place is before k.
+  /// Number of steps whose position is before k.
   [[nodiscard]] HWY_INLINE std::int64_t before(double k, bool at_end) const {
     auto n = static_cast<std::int64_t>(std::min(std::max((k - k_in) / each - 1, 0.0), static_cast<double>(count)));
     while (n < count && place(n, at_end) < k) ++n;
@@ -53,7 +65,7 @@ struct RaySteps {
   }
 };
 
-/// The trilinear field at (x, y, k) of the chunk, lanes anywhere in the block; NaN near blanks.
+/// The trilinear field at (x, y, k) of the chunk, for lanes anywhere in the block; NaN near blanks.
 template <bool cell_data>
 HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
                              MF active) {
@@ -87,7 +99,7 @@ HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_o
   return MulAdd(k - plane, change, front);
 }
 
-/// Bilinear look-up of the pre-integrated table: optical depth and light.
+/// Bilinear lookup of optical depth and light in the pre-integrated table.
 HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (&out)[4]) {
   const DF d;
   const VF last = Set(d, static_cast<float>(table.size - 1)), zero = Zero(d);
@@ -105,13 +117,13 @@ HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (
   }
 }
 
-/// The steps of a packet's lanes [ray, ray + Lanes()) whose places are in a chunk, relative to its first plane.
+/// The steps of a packet's lanes [ray, ray + Lanes()) whose positions are in a chunk, relative to its first plane.
 struct ChunkSteps {
   static constexpr std::size_t most = MaxLanes(DF());
   HWY_ALIGN float begin[most], each[most], last[most], count[most];
   HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
   HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
-  std::int64_t longest = 0;          ///< most of count
+  std::int64_t longest = 0;          ///< largest count
   bool some_enter = false;
 
   HWY_INLINE ChunkSteps(const ChunkView& chunk, int ray, const TileRays& rays) {
@@ -125,7 +137,7 @@ struct ChunkSteps {
       if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
       const RaySteps s(rays.k_in[r], rays.k_out[r], frame.step / static_cast<double>(rays.length_k[r]));
       const bool at_end = frame.preintegrated != nullptr;
-      // Chunks share the steps of a ray by planes, boxes by where the ray goes from one to the next.
+      // Slices divide the steps of a ray at their planes; boxes divide them where the ray goes from one to the next.
       const std::int64_t first_step =
           s.before(rays.from[r] > rays.k_in[r] ? std::max(from, rays.from[r]) : from, at_end);
       const std::int64_t end_step = rays.to[r] < rays.k_out[r] ? s.before(std::min(to, rays.to[r]), at_end)
@@ -142,12 +154,12 @@ struct ChunkSteps {
   }
 };
 
-/// Optical depth of a step, and its light relative to what passes.
+/// Optical depth of a step, and its light before attenuation by what is in front of it.
 struct StepLight {
   VF depth, color[3];
 };
 
-/// Of a step with scalar s all along, as long as `extent` in k; nothing where s is blank or lanes are not active.
+/// A step with the constant scalar s and the length `extent` in k; empty where s is blank or lanes are not active.
 template <class Lookup>
 HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
   const DF d;
@@ -172,25 +184,24 @@ HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF leng
   return light;
 }
 
-/// A step between two scalars.
 struct ScalarStep {
   VF front, back, length;
 };
 
-/// Of a step by the table; the ray's last step, which is shorter, is integrated as the table is made.
+/// A step from the table; the shorter last step of a ray is integrated exactly.
 template <class Lookup>
 HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, const ScalarStep& step,
                                         MF active, MF last) {
   const DF d;
   const VF front = step.front, back = step.back;
-  // Blank samples give NaN, at either end.
+  // Blank samples give NaN at either end.
   const MF good = And(active, And(back == back, front == front));
   VF found[4];
   look_up(table, IfThenElseZero(good, front), IfThenElseZero(good, back), found);
   StepLight light;
   light.depth = IfThenElseZero(good, found[0]);
   for (int c = 0; c < 3; ++c) light.color[c] = IfThenElseZero(good, found[c + 1]);
-  // The last step is shorter than the table's, and its light is not a share of theirs: integrated as the table is.
+  // The table is made for the full length of a step, and light is not proportional to the length.
   const MF final_one = And(good, last);
   if (!AllFalse(d, final_one)) {
     const CL::Light exact = CL::integrate_lanes(lookup, step.length, front, back, final_one);
@@ -266,7 +277,7 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
 template <bool cell_data, CL::TableForm form>
 HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
-  // From lattice numbers to places in the block, slice by slice.
+  // Offsets in the block of lattice point (0, 0) of each slice.
   HWY_ALIGN std::int32_t slice_offsets[SlabBlock::slices + 1];
   const int slices = chunk.box.slabs + (cell_data ? 0 : 1);
   for (int n = 0; n < slices; ++n)
@@ -278,8 +289,8 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
   }
 }
 
-/// Where a ray's field is not known, as the chunk is hidden, a blank is carried on: its next step then shows nothing,
-/// as it would with the field (visible_to_steps() in cell_ranges.hpp).
+/// In a hidden chunk the field is not known. The ray carries a blank, so that its next step is invisible, as it would
+/// be with the field (visible_to_steps() in cell_ranges.hpp).
 HWY_INLINE void skip_chunk(const ChunkView& chunk, TileRays& rays) {
   const auto lanes = static_cast<int>(hn::Lanes(DF()));
   for (int ray = 0; ray < TileRays::count; ray += lanes) {
@@ -297,7 +308,7 @@ HWY_INLINE void sample_chunk(const ChunkView& chunk, TileRays& rays, TileCounts&
     else
       sample_chunk_as<false, form>(chunk, rays, counts);
   };
-  // One form is enough where samples are gathered anyway.
+  // The form for many knots suffices, because samples are gathered anyway.
   as.template operator()<CL::TableForm::many>();
 }
 

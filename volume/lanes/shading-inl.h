@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blinn-Phong shading of stretches inside voxels; included once per instruction set.
+// Blinn-Phong shading of stretches inside voxels. Included once per instruction set (Highway's include guard idiom).
 //
-// What      A stretch's own colour times ambient + diffuse |n l|, and white light of specular |n h|^shininess for each
-//           unit of its opacity: n along the field's gradient in the middle of the stretch, h half way between light l
-//           and view.
+// What      A stretch's own colour times ambient + diffuse |n l|, plus white light of specular |n h|^shininess per unit
+//           of its opacity. n is the direction of the field's gradient in the middle of the stretch, h halfway between
+//           light l and view.
 // How       With W from ShadingView, a world gradient is W^T g, its square g W W^T g, and its product with the light g
-//           W l: no world vector is made. Its product with the view is the field's change along the ray.
-// Accuracy  What floats leave of the samples (SlabBlock::rest) is in the gradients; what even that rounds off is noted
-//           as an error.
-// Ends      Where the gradient is zero the colour stays as it is, without shine.
+//           W l. Therefore no world vectors are needed. Its product with the view is the field's change along the ray.
+// Accuracy  Gradients include the rounding error of the samples (SlabBlock::rest); the error that remains is recorded.
+// Ends      Where the gradient is zero, the colour is unchanged and there is no specular light.
 
 #if defined(TESSERA_VOLUME_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SHADING_INL_H_
@@ -29,28 +28,27 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// What the field's own colour is multiplied by, and the white light added for each unit of opacity.
+/// The factor of the field's own colour, and the white light added per unit of opacity.
 struct Lit {
   VF own, white;
-  VF error;  ///< of light for each unit of opacity, as the gradient is rounded
+  VF error;  ///< of light per unit of opacity, from rounding of the gradient
 };
 
-/// How the field changes per voxel along the ray's axes.
+/// The field's change per voxel along the ray's axes.
 struct Gradient {
   VF i, j, k;
 
-  /// Its change along the ray, per slab.
+  /// The field's change along the ray, per slab.
   HWY_INLINE VF along(const Lanes& lanes) const { return MulAdd(lanes.bx, i, MulAdd(lanes.by, j, k)); }
-  /// Zero where it is not a number, and elsewhere than in `lanes`.
+  /// Zero where it is NaN, and outside `lanes`.
   HWY_INLINE Gradient kept(MF lanes) const {
     const auto finite = [&](VF v) HWY_ATTR { return IfThenElseZero(And(lanes, v == v), v); };
     return {finite(i), finite(j), finite(k)};
   }
 };
 
-/// From the gradient g. Its length in the world and its products with light and view need no world vectors: the light's
-/// come from ShadingView, the view's is the field's change along the ray, `along` for each of the shading's unit.
-/// `light_view` is the cosine between light and view.
+/// Shading for the gradient g. `along` is the field's change along the ray per shading unit (ShadingView::unit), which
+/// is the product of gradient and view. `light_view` is the cosine between light and view.
 HWY_INLINE Lit shade(const FrameView& frame, const RayAxes& axes, const Gradient& g, VF along, VF light_view) {
   const DF d;
   const ShadingView& shading = *frame.shading;
@@ -76,7 +74,7 @@ HWY_INLINE Lit shade(const FrameView& frame, const RayAxes& axes, const Gradient
   return {IfThenElse(flat, one, own), IfThenElseZero(Not(flat), shine), IfThenElseZero(Not(flat), error)};
 }
 
-/// Puts a stretch, integrated by itself, behind what there is.
+/// Composites a stretch that was integrated separately behind the accumulated light.
 HWY_INLINE void put_behind(const Progress& part, const Lit& lit, Progress& progress) {
   const VF t = progress.transmittance;
   const auto color = [&](VF own, VF& sum)

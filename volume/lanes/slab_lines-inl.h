@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The field along a packet's rays in slabs that they cross from plane to plane; included once per instruction set.
+// The field along a packet's rays in slabs that they cross from plane to plane. Included once per instruction set
+// (Highway's include guard idiom).
 //
-// What      Of up to eight slabs: the field where a ray meets the slab's front plane, its back plane and the planes of
-//           axes i and j between them, and the shape of the cubic that it is from one of these to the next. So lines
-//           (line_of()) stand for slabs, or stretches one by one (voxel_pieces-inl.h).
-// Axes      i and j are mirrored, lane by lane, where a ray moves down, so that all slopes are positive. p is the axis
-//           whose plane a ray crosses first, at u_1 of the slab, and q the other, at u_2; 1: not crossed. A ray that
-//           crosses both goes through three voxels of the slab and meets eight lattice points in either slice, which
-//           are numbered by their places along p and q from the voxel it enters:
+// What      For up to eight slabs: the field where a ray meets the slab's front plane, its back plane and the planes of
+//           axes i and j between them, and the shape of the cubic that the field is between consecutive crossings. From
+//           these, slabs are integrated as lines (line_of()) or as separate stretches (voxel_pieces-inl.h).
+// Axes      i and j are mirrored, lane by lane, where a ray moves downwards, so that all slopes are positive. p is the
+//           axis whose plane a ray crosses first, at u_1 in the slab, and q the other, at u_2; 1 if not crossed. A ray
+//           that crosses both planes passes through three voxels of the slab and uses eight lattice points in each
+//           slice, which are numbered by their positions along p and q relative to the voxel that it enters:
 //
 //             q = 2       12 ------ 22
 //                          |    x    |       * where it enters
@@ -18,19 +19,21 @@
 //             q = 0 00 -- 10 ------ 20
 //                   p = 0  1         2
 //
-//           a_pq is the sample at such a point in the slab's front slice, b_pq that behind it in the back slice.
-// Cubic     Inside a voxel the field is trilinear in p, q and u, along the ray hence a cubic of u. Half its second
-//           derivative is, with the ray's slopes p' and q',
+//           a_pq is the sample at such a point in the slab's front slice, b_pq that at the same point in the back
+//           slice.
+// Cubic     Inside a voxel the field is trilinear in p, q and u, and therefore a cubic in u along the ray. With the
+//           ray's slopes p' and q', half its second derivative is
 //             tau = p' q' D_pq + p' D_pk + q' D_qk.
-//           Each D is a mixed difference of the voxel's samples, linear along the third axis with the slope D_pqk; so
-//           where D_pk and D_qk are taken at sides q_s and p_s, and D_pq in the front slice, the middle (p, q, u) of a
-//           stretch has D_pqk (p' q' u + p' (q - q_s) + q' (p - p_s)) more. Stretches that share a side share its
-//           differences. The mean of a stretch that takes e of the slab is tau e^2 / 6 below the middle of its ends
-//           (Simpson's rule, which is exact for cubics).
-// Line      The field is the line between the slab's ends and a rest: at the crossings d_1 and d_2, and between them
-//           the cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 p' q' |D_pqk| / 4 of the odd (Bezier).
-// Bits      A lane's numbers depend on its ray, the chunk and the samples, not on the window that these come from.
-// Ends      What is not a number, as samples are blank, stays so in `bump` and `rho`.
+//           Each D is a mixed difference of the voxel's samples, linear along the third axis with the slope D_pqk. If
+//           D_pk and D_qk are taken at the faces q_s and p_s, and D_pq in the front slice, tau in the middle (p, q, u)
+//           of a stretch has the additional term D_pqk (p' q' u + p' (q - q_s) + q' (p - p_s)). Stretches that share a
+//           face share its differences. The mean of a stretch of extent e in the slab is tau e^2 / 6 below the mean of
+//           its ends (Simpson's rule, which is exact for cubics).
+// Line      The field is the line between the slab's ends plus a deviation: d_1 and d_2 at the crossings, and between
+//           them the cubics' bumps, at most e^2 |tau| / 4 for the even part and e^3 p' q' |D_pqk| / 4 for the odd part
+//           (Bezier).
+// Bits      A lane's numbers depend on its ray, the chunk and the samples, not on the window that provides the samples.
+// Ends      NaN from blank samples is preserved in `bump` and `rho`.
 
 #if defined(TESSERA_VOLUME_SLAB_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SLAB_LINES_INL_H_
@@ -51,13 +54,13 @@ namespace HWY_NAMESPACE {
 
 /// Axis i or j of a packet's lanes, mirrored; see Axes above.
 struct MirroredAxis {
-  VF start, slope, per_slope;  ///< place at the chunk's first plane; per slab, not negative; its inverse, finite
+  VF start, slope, per_slope;  ///< position at the chunk's first plane; slope per slab, >= 0; its inverse, finite
   VF least, most;              ///< voxels of the volume
   VF sign;                     ///< +1, or -1 where mirrored
   VF origin;                   ///< lattice point 0, relative to the packet's i_base or j_base
   VI step;                     ///< elements of the window from a lattice point to the next
 
-  /// Of a ray at `place` + `change` k; `stride`: elements of the window between points that are not mirrored.
+  /// For a ray at `place` + `change` k; `stride`: elements of the window between points before mirroring.
   HWY_INLINE MirroredAxis(VF place, VF change, VF first, VF last, VF point_0, int stride) : origin(point_0) {
     const DF d;
     const VF one = Set(d, 1.0f);
@@ -86,23 +89,23 @@ struct MirroredLanes {
         slopes_product(i.slope * j.slope) {}
 };
 
-/// What is found of up to eight slabs; s[n] at slab n's front plane.
+/// The field in up to eight slabs; s[n] is the field at slab n's front plane.
 struct SlabLines {
   static constexpr int most = 8;
-  int first;  ///< slab of place 0
+  int first;  ///< the slab stored at index 0
   VF s[most + 1];
-  VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings and the field there
+  VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings, and the field there
   VF sag[most];                                   ///< sum of e^3 tau / 6
   VF bump[most];
-  VF even[3][most], odd[3][most];  ///< of each stretch: e^2 tau, and the cubic's coefficient over it
+  VF even[3][most], odd[3][most];  ///< for each stretch: e^2 tau, and the coefficient of the odd part of the cubic
 };
 
-/// A slab as one line: the mean is shift above the middle of its ends, the field within rho of the line. Not a number
-/// where the field is not.
+/// A slab as one line. The mean is `shift` above the mean of its ends, and the field is within rho of the line. NaN
+/// where the field is NaN.
 struct Line {
   VF s_0, s_1, span, shift, rho;
 
-  /// Zero elsewhere than in `lanes`.
+  /// Zero except in `lanes`.
   HWY_INLINE Line kept(MF lanes) const {
     const auto keep = [&](VF v) HWY_ATTR { return IfThenElseZero(lanes, v); };
     return {keep(s_0), keep(s_1), keep(span), keep(shift), keep(rho)};
@@ -118,17 +121,18 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   const VF u_1 = lines.u_1[n], u_2 = lines.u_2[n];
   const VF d_1 = IfThenElseZero(u_1 < one, lines.f_1[n] - MulAdd(u_1, line.span, line.s_0)),
            d_2 = IfThenElseZero(u_2 < one, lines.f_2[n] - MulAdd(u_2, line.span, line.s_0));
-  // Trapezia: the ends' weights are half the stretches next to them.
+  // Trapezoidal rule: each weight is half the extent of the adjacent stretches.
   const VF kinks = MulAdd(d_1, u_2, d_2 * (one - u_1));
   line.shift = half * kinks - lines.sag[n];
   line.rho = Max(Abs(d_1), Abs(d_2)) + lines.bump[n];
   return line;
 }
 
-/// How a slab's field goes along with itself and with the way, but for the odd parts of its cubics: with r the rest
-/// above the line (kinks and the cubics' even parts), m its mean, and u from 0 to 1,
-///   product     of two functions linear in the field: the integral of the field's square less that of (line + m)'s,
-///   covariance  of r and u;  odd  bound of what is left out.
+/// Second-order properties of a slab's field, without the odd parts of its cubics. With r the deviation from the line
+/// (kinks and the cubics' even parts), m its mean, and u from 0 to 1:
+///   product     the integral of the field's square minus that of (line + m)'s, for products of functions linear in it,
+///   covariance  of r and u,
+///   odd         bound of the omitted parts.
 struct Bend {
   VF product, covariance, odd;
 };
@@ -142,7 +146,7 @@ HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
   const VF r[4] = {zero, kink(u[1], lines.f_1[n]), kink(u[2], lines.f_2[n]), zero};
   VF mean = zero, square = zero, moment = zero, odd = zero;
   for (int k = 0; k < 3; ++k) {
-    // A chord from p to q and a parabola on it, of height b.
+    // A chord from p to q plus a parabola of height b.
     const VF p = r[k], q = r[k + 1], b = number(-0.25) * lines.even[k][n];
     const VF e = u[k + 1] - u[k], middle = half * (u[k] + u[k + 1]), sum = p + q;
     const VF area = MulAdd(half, sum, number(2 / 3.0) * b);
@@ -159,7 +163,7 @@ HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
   return bend;
 }
 
-/// Where a slab's window begins, and whether all voxels that may be met have neighbours in the volume.
+/// The position of a slab's window, and whether all voxels that may be met have neighbours in the volume.
 struct WindowPlace {
   const float *front, *back;
   float origin;          ///< element of voxel (i_base, j_base), negative
@@ -167,7 +171,7 @@ struct WindowPlace {
   bool inner;
 };
 
-/// The voxels that lanes are in at plane n of the chunk, in mirrored axes, and where in them.
+/// The voxels of the lanes at plane n of the chunk, in mirrored axes, and the positions in them.
 struct VoxelAt {
   VF i, j;
   VF part_i, part_j;  ///< from the voxel's corner, 0 to 1
@@ -182,7 +186,7 @@ struct VoxelAt {
     }
     part_i = at_i - i, part_j = at_j - j;
   }
-  /// Their element of the window: i + columns j.
+  /// Their element in the window: i + columns j.
   template <class Window>
   HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place) const {
     const DF d;
@@ -194,7 +198,7 @@ struct VoxelAt {
   }
 };
 
-/// The samples at a lattice point in a slab's front and back slice, or a difference of two such pairs.
+/// The samples at a lattice point in a slab's front and back slice, or the difference of two such pairs.
 struct SamplePair {
   VF a, b;
 
@@ -202,9 +206,9 @@ struct SamplePair {
     return {to.a - from.a, to.b - from.b};
   }
   HWY_INLINE VF change() const { return b - a; }
-  /// At u between the slices.
+  /// Interpolated at u between the slices.
   HWY_INLINE VF at(VF u) const { return MulAdd(u, b - a, a); }
-  /// `part` of `step` further.
+  /// Moved by `part` of `step`.
   HWY_INLINE SamplePair moved(VF part, const SamplePair& step) const {
     return {MulAdd(part, step.a, a), MulAdd(part, step.b, b)};
   }
@@ -215,10 +219,10 @@ struct Curvature {
   VF tau, third;
 };
 
-/// What tau is made of, but for D_pq; see Cubic above.
+/// The terms of tau except D_pq; see Cubic above.
 struct SideDifferences {
   VF d_pk, d_qk;
-  VF offset;  ///< p' q' u + p' (q - q_s) + q' (p - p_s), of the stretch's middle
+  VF offset;  ///< p' q' u + p' (q - q_s) + q' (p - p_s) at the stretch's middle
 };
 
 /// A ray's slopes along p and q.
@@ -226,7 +230,7 @@ struct Slopes {
   VF p, q, product;
 };
 
-/// In a voxel whose samples differ by `near` along one axis and, one further along the other axis, by `far`.
+/// For a voxel whose samples differ by `near` along one axis and, one step further along the other axis, by `far`.
 HWY_INLINE Curvature curvature(const Slopes& slope, const SamplePair& near, const SamplePair& far,
                                const SideDifferences& sides) {
   const VF d_pq = far.a - near.a, third = far.b - near.b - d_pq;
@@ -234,7 +238,7 @@ HWY_INLINE Curvature curvature(const Slopes& slope, const SamplePair& near, cons
   return {MulAdd(slope.p, sides.d_pk, tau), third};
 }
 
-/// Into place m of `lines`: the crossings, and the shapes of the stretches between them.
+/// Stores the crossings and the shapes of the stretches between them at index m of `lines`.
 HWY_INLINE void set_stretches(VF u_1, VF u_2, VF slopes_product, const Curvature (&shape)[3], int m, SlabLines& lines) {
   const DF d;
   const VF extent[3] = {u_1, u_2 - u_1, Set(d, 1.0f) - u_2};
@@ -250,13 +254,13 @@ HWY_INLINE void set_stretches(VF u_1, VF u_2, VF slopes_product, const Curvature
   lines.sag[m] = Set(d, 1 / 6.0f) * sag;
   const VF most_even = Max(Max(Abs(even[0]), Abs(even[1])), Abs(even[2])),
            most_odd = Max(Max(Abs(odd[0]), Abs(odd[1])), Abs(odd[2]));
-  // Not a number where any of them is not: Max may leave that out.
+  // NaN where any of them is NaN, because Max may drop NaN.
   const VF all = odd[0] + odd[1] + (odd[2] + lines.sag[m]);
   lines.bump[m] = Set(d, 0.25f) * MulAdd(Zero(d), all, most_odd + most_even);
 }
 
-/// The field of slab n of the chunk into place m of `lines`, but for its back plane. `voxels` counts, lane by lane, the
-/// voxels that live lanes visit.
+/// Stores the field of slab n of the chunk, except at its back plane, in `lines`. `voxels` counts, per lane, the voxels
+/// that live lanes visit.
 template <class Window>
 HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
                           SlabLines& lines, VF& voxels) {
@@ -280,11 +284,11 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   VI step_p = IfThenElse(RebindMask(di, i_is_p), lanes.i.step, lanes.j.step),
      step_q = IfThenElse(RebindMask(di, i_is_p), lanes.j.step, lanes.i.step);
   VI at_00 = in.element<Window>(lanes, place);
-  // Lanes that are not there may be anywhere.
+  // Lanes that are not live may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
   if (gathers) at_00 = if_int(lanes.live, at_00);
   const VI at_10 = at_00 + step_p, at_01 = at_00 + step_q, at_11 = at_10 + step_q;
-  // What is not crossed has nothing behind it: no step, so that nothing but the voxel's own points is read.
+  // If a plane is not crossed, the step beyond it is zero, so that only the voxel's own points are read.
   const VI beyond_p = if_int(crosses_p, step_p), beyond_q = if_int(crosses_q, step_q);
   const VI at_20 = at_10 + beyond_p, at_21 = at_11 + beyond_p, at_12 = at_11 + beyond_q, at_22 = at_21 + beyond_q;
   const auto samples = [&](VI at) HWY_ATTR { return SamplePair{window.front(at), window.back(at)}; };
@@ -292,7 +296,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   const auto first = [&](VF of_i, VF of_j) HWY_ATTR { return IfThenElse(i_is_p, of_i, of_j); };
   const Slopes slope{first(lanes.i.slope, lanes.j.slope), first(lanes.j.slope, lanes.i.slope), lanes.slopes_product};
   const VF p_0 = first(in.part_i, in.part_j), q_0 = first(in.part_j, in.part_i);
-  const VF q_1 = MulAdd(u_1, slope.q, q_0), p_2 = (u_2 - u_1) * slope.p;  // the latter behind p's plane
+  const VF q_1 = MulAdd(u_1, slope.q, q_0), p_2 = (u_2 - u_1) * slope.p;  // p_2 is relative to p's plane
 
   Curvature shape[3];
   const SamplePair s_10 = samples(at_10), s_11 = samples(at_11), along_q = s_11 - s_10;
@@ -300,7 +304,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
     const SamplePair s_00 = samples(at_00), s_01 = samples(at_01), near = s_10 - s_00, far = s_11 - s_01;
     const VF front_0 = MulAdd(p_0, near.a, s_00.a), front_1 = MulAdd(p_0, far.a, s_01.a);
     lines.s[m] = MulAdd(q_0, front_1 - front_0, front_0);
-    // Sides q = 0 and p = 1.
+    // Faces q = 0 and p = 1.
     const VF p_middle = MulAdd(half * u_1, slope.p, p_0);
     const VF offset = NegMulAdd(slope.q, one - p_middle, slope.p * q_1);
     shape[0] = curvature(slope, near, far, {near.change(), along_q.change(), offset});
@@ -309,14 +313,14 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
 
   const SamplePair s_21 = samples(at_21), along_p = s_21 - s_11;
   {
-    // Sides q = 1 and p = 1.
+    // Faces q = 1 and p = 1.
     const VF q_middle = MulAdd(half * (u_2 - u_1), slope.q, q_1);
     const VF offset = NegMulAdd(slope.p, one - q_middle, slope.product * u_2);
     shape[1] = curvature(slope, samples(at_20) - s_10, along_p, {along_p.change(), along_q.change(), offset});
   }
   lines.f_2[m] = s_11.moved(p_2, along_p).at(u_2);
   {
-    // Sides q = 1 and p = 1 again; the latter now begins at 11.
+    // Faces q = 1 and p = 1 again; the latter now begins at 11.
     const SamplePair s_12 = samples(at_12), near = s_12 - s_11;
     const VF p_middle = MulAdd(half * (one - u_2), slope.p, p_2);
     const VF offset = MulAdd(slope.q, p_middle, slope.product);
@@ -325,7 +329,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   set_stretches(u_1, u_2, slope.product, shape, m, lines);
 }
 
-/// The field at slab n's back plane, into place m + 1.
+/// Stores the field at slab n's back plane.
 template <class Window>
 HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
                           SlabLines& lines) {

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays through a slab voxel by voxel where they may meet iso-surfaces; included once per instruction set.
+// Casts rays through a slab voxel by voxel where they may meet iso-surfaces. Included once per instruction set
+// (Highway's include guard idiom).
 //
-// Places    Between two turns of its cubic a ray meets surfaces in the order of their values: from the gap between two
-//           of them that the field is in it goes to the next one as it reaches the upper value or falls below the lower
-//           one. The light up to there is that of the piece, then comes the surface's.
-// Roots     of differences from the value, so that what they err is a part of what the field changes by in the voxel.
-// Unsure    whether a surface is met at all, or in which of two voxels, where the field is near its value at a turn, in
-//           a side of a voxel or at a ray's end: those rays are cast again in double precision (SurfaceWalk).
-// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are not uncertain: where
-//           lanes and value are exact the field has the value there, hence is not below it.
-// Errors    of places and normals go with those of ramps: roundings, each its own (piece_errors-inl.h).
+// What      The light of lanes whose field may reach a surface's value in a slab: that of the volume between the
+//           surfaces they meet, that of the surfaces, and bounds of the errors of both.
+// How       In a voxel the field along the ray is a cubic, which is monotonic between its extrema. In between, a ray
+//           meets surfaces in the order of their values: it leaves the gap between two values when the field reaches
+//           the upper value or falls below the lower one. The light up to that position is integrated as in
+//           ray_piece-inl.h, then the surface's light is added.
+//
+//             upper value  ------------*------     * the ray meets the surface and enters the next gap
+//                                   . '
+//             field         . - - '                  the volume's light up to * is added before the surface's
+//
+//             lower value  -------------------
+//
+//           A crossing is first found by Newton's method on the cubic (ray_cubic-inl.h), then refined in differences of
+//           the field from the value.
+// Accuracy  Because of these differences, the error of a position is relative to the field's variation in the voxel.
+//           Errors of positions and normals are recorded as independent rounding errors, like those of ramps
+//           (piece_errors-inl.h). It is uncertain whether, or in which of two voxels, a ray meets a surface if the
+//           field is near its value at an extremum, in a face of a voxel or at a ray's end. These rays are cast again
+//           in double precision (SurfaceWalk). Level faces, whose four corners have exactly the value (frequent with
+//           integer samples), are not uncertain: where lanes and value are exact, the field equals the value there, and
+//           hence is not below it.
+// Bits      Results depend on a packet's rays and the chunk alone, as in cast_slabs-inl.h.
+// Ends      Voxels with NaN (blank) samples have no surfaces and add no light.
 
 #if defined(TESSERA_VOLUME_SURFACE_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SURFACE_PIECES_INL_H_
@@ -31,10 +47,10 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// How far off places of rays may be, voxels, at most and mostly.
+/// Error of a ray's position in voxels: its bound, and a bound for most rays.
 constexpr float place_off = 2e-6f, place_mostly_off = 5e-7f;
 
-/// The largest difference of a voxel's corners, and the largest of them.
+/// The range of a voxel's corners, and their largest magnitude.
 struct CornerRange {
   VF width, largest;
 
@@ -48,20 +64,20 @@ struct CornerRange {
   }
 };
 
-/// A stretch of lanes in one voxel each.
+/// A stretch of each lane in one voxel.
 struct VoxelStretch {
   VoxelField field;
   Corners corners;
-  VF begin, extent;  ///< of the slab
+  VF begin, extent;  ///< in the slab
   Piece piece;
   Cubic cubic;
-  // Of the slab's path, and what floats leave of its samples.
+  // The slab's path, the stretch in it, and the rounding errors of the slab's samples.
   const SlabPath& path;
   const Stretch& place;
   const RestOfSamples& rest;
 };
 
-/// A packet, where its lanes meet surfaces.
+/// Casts the lanes of a packet that may meet surfaces.
 template <class Lookup>
 class SurfaceCast {
  public:
@@ -78,7 +94,7 @@ class SurfaceCast {
         counts_(rays.counts),
         per_length_(Set(DF(), static_cast<float>(view_.unit / frame_.length_unit)) / lanes_.length) {}
 
-  /// The lanes that are `wanted` through a slab.
+  /// Casts the `wanted` lanes through a slab.
   template <class Window>
   HWY_NOINLINE void cast(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF wanted) {
     const DF d;
@@ -111,7 +127,7 @@ class SurfaceCast {
   }
 
  private:
-  /// The gap between two values that lanes are in.
+  /// The gap between two values that contains each lane's field.
   struct Gap {
     VI number;
     VF low, high;
@@ -120,16 +136,17 @@ class SurfaceCast {
     return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + Set(DI(), 1))};
   }
 
-  /// Lanes whose field `s` is nearer to a value that ends the gap than the noise.
+  /// Lanes whose field `s` is within the noise of a value that bounds the gap.
   static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
     return And(lanes, Or(Abs(s - in.low) < noise, Abs(in.high - s) < noise));
   }
 
-  /// Where a stretch begins or ends in a level side (see Level above), and which axes are across it.
+  /// Lanes for which a stretch begins or ends in a level face (see Accuracy above), and the axes across that face.
   struct LevelSide {
     MF any, across_i, across_j;
   };
-  /// For the end at u of lanes that are near a value there: their field `s` then is exact.
+  /// Finds the level faces at the end u of lanes that are near a value there, and sets their field `s` to the exact
+  /// value.
   HWY_NOINLINE LevelSide level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
     const DF d;
     const DI di;
@@ -176,7 +193,7 @@ class SurfaceCast {
     }
     VF v = zero, s = s_0, lit = zero, s_lit = s_0;  // light has been added up to `lit`
     MF going = whole;
-    // Each round ends at a surface, a turn or the stretch's end.
+    // Each round ends at a surface, an extremum or the stretch's end.
     for (int round = 0; round < 4096; ++round) {
       const VF turn = turns.after(v);
       const MF last = turn == one;
@@ -187,7 +204,7 @@ class SurfaceCast {
           add_level(level_side(stretch, in, stretch.begin + stretch.extent, at_back, s_1), back);
           s_turn = IfThenElse(last, s_1, s_turn);
         }
-        // Before the surface is met, as it may hide what is behind it.
+        // Recorded before the surface is added, which may hide the part behind it.
         note(AndNot(And(last, back.any), near));
       }
       const MF up = s_turn >= s;
@@ -199,7 +216,7 @@ class SurfaceCast {
         const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
         const VF at = IfThenElse(crosses, place.at, v);
         add_light(stretch, lit, at, s_lit, level, crosses);
-        // In a level side it is met in this voxel, not next to another one.
+        // A surface in a level face is met in this voxel, not in an adjacent one.
         const MF at_front = And(v == zero, level == s_0), at_back = And(last, level == s_1);
         const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
           return AndNot(Or(And(at_front, of_front), And(at_back, of_back)), crosses);
@@ -225,13 +242,13 @@ class SurfaceCast {
     side.across_i = Or(side.across_i, more.across_i), side.across_j = Or(side.across_j, more.across_j);
   }
 
-  /// Notes that lanes are to be cast again, if something is seen of them.
+  /// Requests that lanes are cast again, if they are visible: adds their remaining light to the error bound.
   HWY_INLINE void note(MF unsure) {
     const VF seen = progress_.transmittance * Set(DF(), view_.brightest);
     notes_.error_bound = notes_.error_bound + IfThenElseZero(unsure, seen);
   }
 
-  /// A place of the cubic, of the slab, and what the field is like there.
+  /// A position on the cubic and in the slab, and the field's gradient there.
   struct Place {
     VF at, u;
     Gradient gradient;
@@ -241,20 +258,21 @@ class SurfaceCast {
   /// Where lanes meet a surface.
   struct Hit {
     Place place;
-    VI edge;   ///< the surface's, among the values
-    VF level;  ///< its value
+    VI edge;   ///< index of the surface's value
+    VF level;  ///< the value
     MF lanes;
   };
 
-  /// The place near `at`, between v and `turn`, where the field has a surface's value: its level and rest.
+  /// The position near `at`, between v and `turn`, where the field equals a surface's value, given as level and rest.
   HWY_INLINE Place place_of(const VoxelStretch& stretch, VF v, VF turn, VF at, VF level, VF rest) const {
     VoxelField from_level = stretch.field;
     from_level.a00 = from_level.a00 - level - rest;
     const VF low = MulAdd(v, stretch.extent, stretch.begin), high = MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
     place.u = MulAdd(at, stretch.extent, stretch.begin);
-    // find_crossing() goes by values that are rounded off their level: two steps by differences to it. The first place
-    // is near enough for the field's slopes. Where it is level that may be anything.
+    // find_crossing() uses values rounded to their level. Two Newton steps with differences from the exact value
+    // correct this. The first position is accurate enough for the field's slopes; where the field is level the result
+    // may be anywhere.
     for (int n = 0; n < 2; ++n) {
       const VF height = from_level.at(place.u, lanes_);
       place.gradient = from_level.gradient(place.u, lanes_);
@@ -280,7 +298,7 @@ class SurfaceCast {
     return result;
   }
 
-  /// Squares of world gradients: their products with the metric, in the ray's axes.
+  /// Squared lengths of world gradients: products with the metric, in the ray's axes.
   HWY_INLINE VF square_of(const Gradient& g) const {
     const float flip = axes_.mirrored ? -1.0f : 1.0f;
     const auto times = [&](VF v, int a, int b, float by)
@@ -323,8 +341,8 @@ class SurfaceCast {
     note_surface(stretch, range, hit, steepness, hidden);
   }
 
-  /// Lanes that meet a surface next to another voxel, where normals differ, but for rays that are put on their side of
-  /// a plane (keep_side()).
+  /// Requests that lanes are cast again that meet a surface at the boundary to another voxel, where normals differ.
+  /// Rays that keep_side() has moved off a plane are exempt.
   HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
     const DF d;
     const auto near = [&](VF at, VF slope) HWY_ATTR {
@@ -335,8 +353,8 @@ class SurfaceCast {
     note(Or(And(beside_i, near(stretch.field.x, lanes_.bx)), And(beside_j, near(stretch.field.y, lanes_.by))));
   }
 
-  /// What a surface errs: its normal, and the matter before it that may be behind it. `steepness` is the gradient's
-  /// length, `hidden` what the surface hides.
+  /// Records the errors of a surface: of its normal, and of matter in front of it that may be behind it. `steepness` is
+  /// the gradient's length, `hidden` the light that the surface hides.
   HWY_INLINE void note_surface(const VoxelStretch& stretch, const CornerRange& range, const Hit& hit, VF steepness,
                                VF hidden) {
     const DF d;
@@ -348,7 +366,7 @@ class SurfaceCast {
     const VF values = MulAdd(Set(d, 0x1p-24f), range.width, Set(d, view_.value_noise) * range.largest);
     const VF noise = MulAdd(aside, range.width, values);
     const VF per_slope = Set(d, 1.0f) / Max(Abs(place.slope), Set(d, 1e-30f));
-    // What two steps of Newton's method leave of the error of the place that they begin at.
+    // The error that remains of the initial position after two steps of Newton's method.
     const VF guess = Set(d, 0x1p-22f) * range.largest * per_slope;
     const VF ratio = Min(guess * bend * per_slope, Set(d, 1.0f));
     const VF off = MulAdd(noise, per_slope, guess * (ratio * (ratio * ratio)));
@@ -376,12 +394,12 @@ class SurfaceCast {
     notes_.error_bound = MulAdd(error, hidden, notes_.error_bound);
   }
 
-  /// The light of the stretch from place `a` to `b`, where its field is s_a and s_b.
+  /// Adds the light of the stretch between positions `a` and `b`, where its field is s_a and s_b.
   HWY_NOINLINE void add_light(const VoxelStretch& stretch, VF a, VF b, VF s_a, VF s_b, MF lanes) {
     const DF d;
     const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
     const VF extent = b - a, middle = half * (a + b);
-    // What nothing gets through to is done, though its packet is not.
+    // Opaque lanes are finished, even if other lanes of the packet are not.
     const MF seen = progress_.transmittance >= Set(d, frame_.least_transmittance);
     const MF there = And(And(lanes, seen), extent > zero);
     if (AllFalse(d, there)) return;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays through a slab voxel by voxel, and slabs that cross knots; included once per instruction set.
+// Casts rays through a slab voxel by voxel, and through slabs that cross knots. Included once per instruction set
+// (Highway's include guard idiom).
 //
-// What      The light of lanes that no line of slab_lines-inl.h stands for: where rays begin or end in a slab, of
-//           shaded stretches, of cell data, and where the field crosses knots of the transfer function or is rough.
-// How       In a voxel the field along the ray is a cubic: its values at the ends and in the middle of a stretch and
-//           its leading coefficient give the light (ray_piece-inl.h). Of a slab that crosses knots cast_mixed() still
-//           takes the lanes that do not as lines; the stretches of the others are put side by side in full vectors
-//           (cast_stretches()).
-// Accuracy  That of ray_piece-inl.h. Where matter is so dense that it shows, note_ends() and note_planes() add what
-//           rounding does to the places where rays begin and end.
+// What      The light of lanes that cannot be integrated as a line of slab_lines-inl.h: where rays begin or end in a
+//           slab, with shading, with cell data, and where the field crosses knots of the transfer function or is rough.
+// How       In a voxel the field along the ray is a cubic, and its values at the ends and in the middle of a stretch
+//           with its leading coefficient determine the light (ray_piece-inl.h). In a slab that crosses knots,
+//           cast_mixed() integrates the lanes that do not cross any as lines; the stretches of the other lanes are
+//           packed into full vectors (cast_stretches()).
+// Accuracy  That of ray_piece-inl.h. For dense matter, note_ends() and note_planes() record the effect of rounding
+//           errors of the positions where rays begin and end.
 // Ends      NaN samples are blank: their stretches add nothing.
 
 #if defined(TESSERA_VOLUME_VOXEL_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -55,9 +56,9 @@ struct VoxelField {
     return {MulAdd(fy, MulAdd(u, cij, aij), MulAdd(u, ci, ai)), MulAdd(fx, MulAdd(u, cij, aij), MulAdd(u, cj, aj)),
             MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00))};
   }
-  /// At u = 0.
+  /// The field at u = 0.
   HWY_INLINE VF at_front() const { return MulAdd(y, MulAdd(x, aij, aj), MulAdd(x, ai, a00)); }
-  /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
+  /// The field at u = 1, where the ray is at (x_1, y_1), in the same coordinates as the voxel's corner (i, j).
   HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
     const VF fx = x_1 - i, fy = y_1 - j;
     const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
@@ -66,8 +67,8 @@ struct VoxelField {
   struct MiddleAndMean {
     VF middle, mean;
   };
-  /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
-  /// twelfth of the product of their changes. `ee` is e^2 / 12.
+  /// The value at the middle u of a stretch of extent e, and the mean over the stretch: every product of two of x, y
+  /// and u adds a twelfth of the product of their changes. `ee` is e^2 / 12.
   HWY_INLINE MiddleAndMean middle_and_mean(VF u, VF ee, const Lanes& lanes) const {
     const VF fx = MulAdd(u, lanes.bx, x), fy = MulAdd(u, lanes.by, y);
     const VF a_y = MulAdd(fx, aij, aj), c_y = MulAdd(fx, cij, cj), c_x = MulAdd(fy, cij, ci);
@@ -78,7 +79,7 @@ struct VoxelField {
   }
 };
 
-/// What a packet's rays are cast through.
+/// The data that a packet's rays are cast with.
 template <class Lookup>
 struct PacketView {
   const FrameView& frame;
@@ -88,12 +89,12 @@ struct PacketView {
   CurrentInterval& current;
 };
 
-/// How far off a place in slab n of the chunk may be, slabs: roundings of numbers as large as that.
+/// Rounding error of a position in slab n of the chunk, in slabs: that of numbers of this size.
 HWY_INLINE VF place_noise(VF k) { return (k + Set(DF(), 2.0f)) * Set(DF(), 0x1p-24f); }
 
-/// Notes what a slab errs, point data, as places where rays begin and end in it are rounded: there is too much or too
-/// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
-/// back. `front_light` is the light gathered in front of it.
+/// Records the errors of a slab of point data due to rounding of the positions where rays begin and end in it. There is
+/// an excess or lack of the matter at its front (scalar line.s_0), with the slab's own light behind it, and of that at
+/// its back. `front_light` is the light accumulated in front of the slab.
 template <class Lookup>
 HWY_NOINLINE void note_ends(const PacketView<Lookup>& packet, const Line& line, const SlabPath& path, MF there,
                             const Progress& front_light, RayState& rays) {
@@ -129,8 +130,8 @@ HWY_NOINLINE void note_ends(const PacketView<Lookup>& packet, const Line& line, 
   at(line.s_1, path.to < one, false);
 }
 
-/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`, to which `before` got
-/// through.
+/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`, with transmittance
+/// `before` at its front.
 template <class Lookup>
 HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& path, int n, const Piece& piece,
                               VF before, RayState& rays) {
@@ -144,7 +145,7 @@ HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& 
   const VF scalar = IfThenElseZero(good, piece.s_0);
   const VI interval = lookup.locate(scalar, zero == zero);
   const auto index = lookup.index(interval, good);
-  // A plane of another axis is crossed the less surely the more slowly.
+  // The slower the ray moves across a plane of another axis, the less accurate the crossing is.
   const auto off = [&](VF i, VF j) HWY_ATTR {
     const auto of = [&](VF place, VF per_slope, MF crossed) HWY_ATTR {
       const VF noise = (Abs(place) + one) * Set(d, 0x1p-24f);
@@ -171,14 +172,14 @@ HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& 
   rays.notes.error_bound = rays.notes.error_bound + IfThenElseZero(good, noted);
 }
 
-/// What floats leave of a slab's samples (SlabBlock::rest), for gradients.
+/// The rounding errors of a slab's samples (SlabBlock::rest), for gradients.
 class RestOfSamples {
  public:
   /// Of a window that begins at `front` and `back`.
   HWY_INLINE RestOfSamples(const SlabBlock& block, const float* front, const float* back)
       : there_(block.has_rest), window_(block.rest_of(front), block.rest_of(back), block.pitch) {}
 
-  /// Adds the share that it has in the gradient at u.
+  /// Adds their contribution to the gradient at u.
   HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, Gradient& g) const {
     if (HWY_LIKELY(!there_)) return;
     const VoxelField rest(window_.corners(window_index(window_, path, stretch)), path.x - stretch.i,
@@ -192,14 +193,14 @@ class RestOfSamples {
   GatherWindow window_;
 };
 
-/// A slab's samples around the rays, and what floats leave of them.
+/// A slab's samples around the rays, and their rounding errors.
 template <class Window>
 struct SlabSamples {
   const Window& window;
   const RestOfSamples& rest;
 };
 
-/// Voxel by voxel, for the lanes that are `wanted`; `uniform` where all are in one interval, else null.
+/// Casts the `wanted` lanes voxel by voxel. `uniform` is the table's row if all are in one interval, else null.
 template <bool cell_data, class Window, class Lookup>
 HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& path,
                               const SlabSamples<Window>& samples, const UniformLookup* uniform, MF wanted,
@@ -261,28 +262,28 @@ HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& 
     if (lit_part) {
       if (HWY_UNLIKELY(frame.has_rest)) notes.error_bound = MulAdd(before * part.alpha, lit.error, notes.error_bound);
       put_behind(part, lit, progress);
-      // Within the stretch light is measured from its own front.
+      // Inside the stretch, light was measured from the stretch's own front.
       note_first_light(progress, piece.begin, notes);
     }
   }
 }
 
-/// What a stretch's cubic is besides the chord between its ends: the even part's height and a quarter of the odd one's
-/// coefficient (ray_piece-inl.h), which bound it together.
+/// Bound of the difference between a stretch's cubic and the chord between its ends: the height of the even part, and a
+/// quarter of the odd part's coefficient (ray_piece-inl.h).
 HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
   const DF d;
   const VF even = NegMulAdd(Set(d, 0.5f), s_0 + s_1, middle);
   return MulAdd(Set(d, 0.25f), Abs(p_3), Abs(even));
 }
 
-/// The cubic at a stretch's other end: Simpson's rule is exact, mean = (s_0 + 4 middle + s_1) / 6.
+/// The cubic at a stretch's other end, by Simpson's rule, which is exact: mean = (s_0 + 4 middle + s_1) / 6.
 HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
   const DF d;
   return MulAdd(Set(d, 6.0f), mean, Set(d, -4.0f) * middle) - s;
 }
 
-/// Bound of the field's distance from the slab's line: the borders', and the bumps between. Not a number where the
-/// field is not.
+/// Bound of the field's distance from the slab's line: at the borders of voxels, and of the bumps in between. NaN where
+/// the field is NaN.
 HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
   const VF borders = Max(Abs(border_1 - line_1), Abs(border_2 - line_2));
   const VF bumps = Max(Max(bump[0], bump[1]), bump[2]);
@@ -290,7 +291,7 @@ HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, con
   return MulAdd(Zero(DF()), any, borders + bumps);
 }
 
-/// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
+/// The line of a slab that lanes may enter or leave anywhere. The result is arbitrary for lanes outside the slab.
 template <class Window>
 HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
   const DF d;
@@ -326,15 +327,15 @@ HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window
   return line;
 }
 
-/// The stretches of a slab, one behind the other, of the lanes that are there.
+/// The stretches of a slab from front to back, and the lanes that have them.
 struct SlabPieces {
   Piece pieces[3];
   MF there[3];
 };
 
 #if HWY_TARGET <= HWY_AVX3
-/// Adds pieces of lanes all of which have seen light: put side by side, integrated from their own fronts sixteen at
-/// once, and put behind each other by lane.
+/// Adds pieces of lanes for which light has begun already. They are packed into full vectors, each integrated
+/// separately from its own front, and then composited by lane.
 template <class Lookup>
 HWY_INLINE void add_side_by_side(const PacketView<Lookup>& packet, const SlabPieces& slab, RayState& rays) {
   const DF d;
@@ -379,7 +380,7 @@ HWY_INLINE void add_side_by_side(const PacketView<Lookup>& packet, const SlabPie
 }
 #endif
 
-/// The stretches of a slab (slab_lines-inl.h) one by one, for the lanes that are `wanted`.
+/// Casts the stretches of a slab (slab_lines-inl.h) one by one, for the `wanted` lanes.
 template <class Lookup>
 HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLines& lines, int n, MF wanted,
                                  RayState& rays) {
@@ -389,7 +390,7 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
   const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
   const VF place[4] = {zero, u_1, u_2, one};
-  // Behind a plane that is not crossed there is nothing.
+  // There is nothing behind a plane that is not crossed.
   const VF value[4] = {lines.s[m], IfThenElse(u_1 < one, lines.f_1[m], s_end),
                        IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
   SlabPieces slab;
@@ -404,8 +405,8 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
     p.p_3 = lines.odd[k][m];
     p.length = IfThenElseZero(slab.there[k], p.extent * packet.lanes.length);
     p.begin = place[k] + Set(d, static_cast<float>(n));
-    // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
-    // both on different sides.
+    // A voxel that is not blank, but whose end value is from a voxel that is: because of rounding, the ray passes an
+    // edge of both on different sides.
     const VF shape = lines.even[k][m] + lines.odd[k][m];
     if (HWY_UNLIKELY(has_blanks)) torn = Or(torn, AndNot(p.s_mid == p.s_mid, And(slab.there[k], shape == shape)));
   }
@@ -418,9 +419,9 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
     add_any(packet.lookup, frame, piece, rays.light, rays.notes, rays.counts.samples);
 }
 
-/// A slab, or the part of it that counts, whose lanes are in several intervals, or cross knots: adds the lanes that may
-/// be taken as a line, and gives the others. `length`: of the lanes that are there; `begin`: slabs from the chunk's
-/// first.
+/// For a slab, or a part of it, whose lanes are in several intervals or cross knots: adds the lanes that can be
+/// integrated as a line, and returns the others. `length`: of the lanes that are there; `begin`: in slabs from the
+/// chunk's first.
 template <class Lookup>
 HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, MF there, VF begin, VF length,
                            RayState& rays) {
@@ -445,7 +446,7 @@ HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, M
   const VF dimmed = dimming * slope.color * (line.rho * Set(d, 1 / (9 * frame.piece_tolerance)));
   MF together = And(And(there, high < edge), MulAdd(spread, scale, dimmed) <= Set(d, 1.0f));
   if (frame.error_bound != nullptr && !frame.error_bound->step.empty()) {
-    // What may touch a step is looked at as a cubic.
+    // Lanes that may touch a step are examined as cubics.
     const VF noise = Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, Zero(DI()));
     const MF above = low - low_edge >= noise;
     together = And(together, And(above, edge - high >= noise));

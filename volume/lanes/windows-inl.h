@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corner samples of the voxels that the lanes of a packet are in; included once per instruction set.
+// Corner samples of the voxels that contain a packet's lanes. Included once per instruction set (Highway's include
+// guard idiom).
 //
-// What      Of two neighbouring slices the samples at the corners of each lane's voxel.
-// How       A packet's rays are close together: in one slab they meet a window of few columns and rows. Two slices of
-//           that window fit into vector registers, where a permutation finds a corner of sixteen voxels in one
-//           instruction (a gather takes fifteen times as long on processors that guard it against sampling). Wider
-//           windows, and all where vectors are shorter than AVX-512's, are gathered from memory.
-// Ends      An index must be in the window: callers that gather put lanes that are not there to element 0.
+// What      The samples of two adjacent slices at the corners of each lane's voxel.
+// How       A packet's rays are close together: in one slab they need a window of few columns and rows. Two slices of
+//           that window fit into vector registers, where one permutation finds a corner of sixteen voxels. (A gather
+//           takes fifteen times as long on processors with mitigations against data sampling.) Wider windows, and all
+//           windows where vectors are shorter than those of AVX-512, are gathered from memory.
+// Ends      An index must be inside the window: callers that gather set lanes without a voxel to element 0.
 
 #if defined(TESSERA_VOLUME_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_WINDOWS_INL_H_
@@ -39,7 +40,7 @@ using scene::HWY_NAMESPACE::load_where;
 #endif
 using CL::VI;
 
-/// Samples at a voxel's corners: a in the front slice, b in the back one; first digit along i, second along j.
+/// Samples at a voxel's corners: a in the front slice, b in the back slice; first digit along i, second along j.
 struct Corners {
   VF a00, a10, a01, a11, b00, b10, b01, b11;
 };
@@ -48,7 +49,7 @@ struct Corners {
 
 HWY_INLINE MF within(VF v, VF low, VF high) { return And(v >= low, v < high); }
 
-/// 6 columns and 5 rows a slice, in two registers: sample (i, j) is element i + 6 j.
+/// 6 columns and 5 rows per slice, in two registers: sample (i, j) is element i + 6 j.
 class SmallWindow {
  public:
   static constexpr int columns = 6, rows = 5;
@@ -57,7 +58,7 @@ class SmallWindow {
     load(a, pitch, a_0_, a_1_);
     load(b, pitch, b_0_, b_1_);
   }
-  /// Every sample is in [low, high).
+  /// Whether every sample is in [low, high).
   HWY_INLINE bool all_in(float low, float high) const {
     const VF l = Set(DF(), low), h = Set(DF(), high);
     return AllTrue(DF(), And(And(within(a_0_, l, h), within(b_0_, l, h)), And(within(a_1_, l, h), within(b_1_, l, h))));
@@ -72,7 +73,7 @@ class SmallWindow {
   }
 
  private:
-  /// The last two lanes, which nothing looks up, hold samples too, as all_in() looks at all.
+  /// The last two lanes are never looked up, but contain samples too, because all_in() tests all lanes.
   static HWY_INLINE void load(const float* s, std::ptrdiff_t pitch, VF& low, VF& high) {
     const float *const r1 = s + pitch, *const r2 = r1 + pitch, *const r3 = r2 + pitch, *const r4 = r3 + pitch;
     low = load_where(0x003F, s, Zero(DF()));
@@ -85,7 +86,7 @@ class SmallWindow {
   VF a_0_, a_1_, b_0_, b_1_;
 };
 
-/// 8 columns and 8 rows a slice, in four registers: sample (i, j) is element i + 8 j.
+/// 8 columns and 8 rows per slice, in four registers: sample (i, j) is element i + 8 j.
 class LargeWindow {
  public:
   static constexpr int columns = 8, rows = 8;
@@ -127,10 +128,10 @@ class LargeWindow {
 /// Any width, from memory.
 class GatherWindow {
  public:
-  static constexpr int columns = 1, rows = 1;  ///< that must be in the block from where it begins
+  static constexpr int columns = 1, rows = 1;  ///< the part that must be in the block from where the window begins
 
   HWY_INLINE GatherWindow(const float* a, const float* b, std::ptrdiff_t pitch) : a_(a), b_(b), pitch_(pitch) {}
-  /// It would take as long to look as to integrate.
+  /// Always false: the test would take as long as the integration.
   HWY_INLINE bool all_in(float, float) const { return false; }
   HWY_INLINE VI index(VF i, VF j) const { return ConvertTo(DI(), MulAdd(j, Set(DF(), static_cast<float>(pitch_)), i)); }
   HWY_INLINE VF front(VI index) const { return GatherIndex(DF(), a_, index); }
