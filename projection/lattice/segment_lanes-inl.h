@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Segments on the lattice, one per lane. Included once per instruction set (Highway's include guard idiom).
+// Appends segments of the lattice from lanes to a SegmentStream. Included once per instruction set (Highway's include
+// guard idiom).
+//
+// What      SegmentLanes is a LatticeSegment in structure-of-arrays form, one segment per lane. append() adds the lanes
+//           of a mask to the stream, in the order of the lanes.
+// How       The lanes of the mask are packed in registers by one permutation (LanePacker) and stored as whole vectors:
+//
+//             mask      1  0  1  1  0  0  1  0
+//             lanes     a  b  c  d  e  f  g  h
+//             stored    a  c  d  g  x  x  x  x    x: any lanes, overwritten by the next call
+//                       ^           ^
+//                       size before size after
+//
+// Ends      The arrays need room for a whole vector behind `size`, which SegmentStream::padding provides. Not defined
+//           for HWY_SCALAR.
 
 #if defined(TESSERA_PROJECTION_SEGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_SEGMENT_LANES_INL_H_
