@@ -21,7 +21,7 @@ import tokenize
 from pathlib import Path
 
 DIRECTORIES = """include api frame scene apps server analysis annotation io cells readers system colormaps datasets
-                 reference gl tests bench sorting exchange compositor projection""".split()
+                 reference gl tests bench sorting exchange compositor projection volume integrals""".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
 SCRIPTS = ["scripts/**/*.py", "tests/**/*.py", "bench/**/*.py"]
 MARKDOWN = ["README.md", "CHANGELOG.md", "docs/*.md", "*/README.md", "*/*/README.md"]
