@@ -85,7 +85,7 @@ void draw(const Image& picture, const Annotation& annotation, const View& view, 
   if (picture.size != view.size ||
       picture.rgba.size() != 4 * std::size_t(view.size.width) * std::size_t(view.size.height))
     throw bad_input(
-        fmt::format("annotation: the picture has {}x{} pixels, its view {}x{}; give the view it was rendered of",
+        fmt::format("annotation: the image has {}x{} pixels, its view {}x{}; give the view it was rendered of",
                     picture.size.width, picture.size.height, view.size.width, view.size.height));
   const Typeface typeface(text_size(annotation.style, view.size));
   const Ink ink(annotation.style);

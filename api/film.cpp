@@ -30,7 +30,7 @@ void check_fits_memory(ImageSize size) {
   const auto free = static_cast<double>(system::available_memory());
   if (needed > free)
     throw Error(ErrorCode::system_failure,
-                fmt::format("`size`: a {}x{} picture takes {:.1f} GiB, and {:.1f} are free here; make it smaller",
+                fmt::format("`size`: a {}x{} image takes {:.1f} GiB, and {:.1f} are free here; make it smaller",
                             size.width, size.height, needed / (1 << 30), free / (1 << 30)));
 }
 

@@ -67,7 +67,7 @@ Image read_image(const std::filesystem::path& file) { return io::read_image(file
 TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(io::identify(file)); }
 
 void write_deep_image(const DeepImage& image, const std::filesystem::path& file) {
-  if (file.extension() != ".exr") throw scene::bad_input(file.string() + ": deep pictures are OpenEXR; name it .exr");
+  if (file.extension() != ".exr") throw scene::bad_input(file.string() + ": deep images are OpenEXR; name it .exr");
   io::write_deep_exr(image, file);
 }
 
@@ -80,7 +80,7 @@ void require_mesh(const std::filesystem::path& file) { io::require_mesh(io::iden
 std::string read_text(const std::filesystem::path& file) {
   std::error_code unknown;
   if (std::filesystem::is_directory(file, unknown))
-    throw scene::bad_input(file.string() + ": is a folder; name a file in it");
+    throw scene::bad_input(file.string() + ": is a directory; name a file in it");
   const system::PositionalFile opened = io::open_input(file);
   return opened.beginning(opened.size());
 }

@@ -38,7 +38,7 @@ Reference::Reference(Dataset dataset, const View& view, const TransferFunction& 
                      const Settings& settings) {
   const Dataset::State& data = StateAccess::of(dataset);
   if (data.ranks > 1)
-    throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
+    throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge images");
   frame::UncutMesh mesh;
   if (dataset.is_mesh()) mesh = api::uncut_mesh(data);
   auto rays = rays_of(dataset, mesh, view, transfer_function, settings);

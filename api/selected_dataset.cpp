@@ -65,7 +65,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
 Dataset Dataset::selected(const Selection& selection) const {
   validate(selection);
   if (is_grid())
-    throw scene::bad_input(state_->source + ": is a grid, of which no cells are selected; select those of meshes");
+    throw scene::bad_input(state_->source + ": is a grid, whose cells cannot be selected; select cells of meshes");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source +
                            ": this rank has a part of the mesh; open it with ReadOptions::selection instead");

@@ -67,7 +67,7 @@ void check_view(const View& view) {
 void check_reach(const View& view, const Box& bounds) {
   if (!bounds.empty() && !has_coordinates(view, bounds))
     throw scene::bad_input(
-        "view: data and camera are so far apart that places in the picture are not numbers; move the camera nearer");
+        "view: data and camera are so far apart that places in the image are not numbers; move the camera nearer");
 }
 
 /// Returns the single frame of a film of one frame.
@@ -187,7 +187,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {
-  throw scene::bad_input("balance: pictures are of grids, and the data set is a mesh; leave them out");
+  throw scene::bad_input("balance: images are of grids, and the data set is a mesh; leave them out");
 }
 
 BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View& view,

@@ -137,7 +137,7 @@ void validate(const FrameSettings& frame, const Settings& settings, DataKind dat
     throw scene::bad_input(fmt::format(
         "{}: steps along rays give light other than that of their parts; set `integrator` automatic or exact", what));
   if (data == DataKind::grid && settings.grid.shading && !frame.peel)
-    throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
+    throw scene::bad_input("deep image: it is not shaded; leave `shade` out");
   if (data == DataKind::mesh && settings.mesh.rasterizer == Rasterizer::scanline)
     throw scene::bad_input(
         fmt::format("{}: `rasterizer` scanline leaves gaps and overlaps in depth; use planes", what));

@@ -7,20 +7,21 @@ namespace tessera::apps {
 namespace {
 
 constexpr CommandRow rows[] = {
-    {Trait::render, "render", "Render a mesh or a volume to pictures",
-     "tessera render mesh.vtu -o picture.png\ntessera render head.nii.gz --view left --color-bar -o head.png\n"
+    {Trait::render, "render", "Render a mesh or a volume to images",
+     "tessera render mesh.vtu -o image.png\ntessera render head.nii.gz --view left --color-bar -o head.png\n"
      "tessera render mesh.vtu --field p --transfer-function viridis --orbit 120 -o turn.mp4"},
     {Trait::serve, "serve", "Show a mesh or a volume in a browser, as it is turned and changed",
      "tessera serve mesh.vtu\nmpirun -n 4 tessera serve mesh.pvtu --port 8080"},
-    {Trait::info, "info", "Say what a mesh or volume holds and how it would be rendered", "tessera info mesh.vtu"},
+    {Trait::info, "info", "Print the contents of a mesh or volume and how it would be rendered",
+     "tessera info mesh.vtu"},
     {Trait::convert, "convert", "Write a mesh as tetrahedra, or a volume, with one scalar",
      "tessera convert mesh.vtu mesh.tets"},
     {Trait::generate, "generate", "Make a mesh or a volume", "tessera generate cube cube.vtu n=16"},
     {Trait::chart, "chart", "Chart time against error of every method on this data and view", ""},
-    {Trait::timing, "timing", "Say where the time of traced runs went", ""},
+    {Trait::timing, "timing", "Print where traced runs spent their time", ""},
     {Trait::formats, "formats", "List the formats of files that are read, and known ones that are not", ""},
     {Trait::presets, "presets", "List the colour presets of --transfer-function, or draw them", ""},
-    {Trait::help, "help", "Say how a command is called", ""},
+    {Trait::help, "help", "Print the usage of a command", ""},
     {Trait::completion, "completion", "Print the script by which a shell completes words of tessera", ""}};
 
 }  // namespace

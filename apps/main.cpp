@@ -198,7 +198,7 @@ int main(int argc, char** argv) {
     require_stack();
     grow_stack();
     std::set_terminate(on_terminate);
-    constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";
+    constexpr auto remedy = "finished images stay, and the same command with --resume goes on from there";
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});
   } catch (...) {

@@ -25,11 +25,11 @@ std::string& spooled_name() {
 
 std::filesystem::path spool_standard_input() {
   if (::isatty(STDIN_FILENO) == 1)
-    throw bad_input("standard input: it is a terminal; send a file to it, tessera render - -o picture.png < FILE");
+    throw bad_input("standard input: it is a terminal; send a file to it, tessera render - -o image.png < FILE");
   const auto fail = [](const char* what) {
     throw Error(ErrorCode::system_failure, "standard input",
                 fmt::format("{} {}: {}", what, std::filesystem::temp_directory_path().string(), std::strerror(errno)),
-                "free some space there, or set TMPDIR to another folder");
+                "free some space there, or set TMPDIR to another directory");
   };
   // Stays open until the process ends: its name is one of this process's open files.
   int file = ::open(std::filesystem::temp_directory_path().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);

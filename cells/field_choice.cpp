@@ -370,7 +370,7 @@ void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const s
                    const std::string& source) {
   if (choice.component != magnitude || wish.ends_with(":mag") || wish.ends_with(":magnitude")) return;
   throw scene::bad_input(
-      fmt::format("{}: '{}' has colors, of {} components, which are not drawn as such; choose one with `field` {}:0 "
+      fmt::format("{}: '{}' has colors of {} components, which are not drawn as colors; choose one with `field` {}:0 "
                   "(red), or their length with {}:mag",
                   source, field.name, field.components, field.name, field.name));
 }

@@ -52,7 +52,7 @@ struct Recipe {
 std::vector<Recipe> recipes() {
   const GeneratorParameter seed{"seed", 7, "of the random numbers"};
   return {
-      {{"demo", "a wake behind a cylinder: a picture to start with", {{"resolution", 1, "1 is about 0.52 M tets"}}},
+      {{"demo", "a wake behind a cylinder: an image to start with", {{"resolution", 1, "1 is about 0.52 M tets"}}},
        [](const Values& v) { return demo(v.real("resolution")); }},
       {{"cube",
         "n^3 voxels of six tets, inner vertices jittered, smooth field",

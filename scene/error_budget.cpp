@@ -23,7 +23,7 @@ void check_accuracy(double accuracy) {
   if (!(accuracy > 0) || !std::isfinite(accuracy))
     throw bad_input(fmt::format("`accuracy` {}: it must be positive", accuracy));
   if (accuracy < error_budget::least_accuracy)
-    throw bad_input(fmt::format("`accuracy` {}: pictures are of 32-bit numbers, which keep {} at best; give no less",
+    throw bad_input(fmt::format("`accuracy` {}: images are of 32-bit numbers, which keep {} at best; give no less",
                                 accuracy, error_budget::least_accuracy));
 }
 

@@ -340,13 +340,13 @@ void Stage::check_size(ImageSize size) const {
   constexpr std::uint64_t bytes_of_pixel = 24;  // rendered and encoded
   if (size.width > longest_side || size.height > longest_side)
     throw bad_input(
-        fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller picture, or render it "
+        fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller image, or render it "
                     "by its command line",
                     size.width, size.height, longest_side));
   const auto width = static_cast<std::uint64_t>(size.width), height = static_cast<std::uint64_t>(size.height);
   if (width * height * bytes_of_pixel > memory_bytes_)
     throw bad_input(
-        fmt::format("--size: {}x{} takes more memory than the server has for it; ask for a smaller picture, "
+        fmt::format("--size: {}x{} takes more memory than the server has for it; ask for a smaller image, "
                     "or start the server with a larger --memory",
                     size.width, size.height));
 }

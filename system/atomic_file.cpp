@@ -52,7 +52,7 @@ OutputFault::~OutputFault() = default;
 Error OutputFault::since_changed() const {
   if (code() == ErrorCode::system_failure) return *this;
   return {ErrorCode::system_failure, subject(), problem(),
-          "it could be written when the run began, see what has removed or closed the folder since"};
+          "it could be written when the run began, see what has removed or closed the directory since"};
 }
 
 void check_writable(const fs::path& target) {
@@ -169,15 +169,15 @@ void AtomicFile::fail(int error_number, const char* doing) const {
   switch (error_number) {
     case ENOENT:
     case ENOTDIR:
-      remedy = "make the folder first, or name another";
+      remedy = "make the directory first, or name another";
       break;
     case EACCES:
     case EPERM:
     case EROFS:
-      remedy = "name a folder you may write in";
+      remedy = "name a directory you may write in";
       break;
     case EISDIR:
-      remedy = "name a file, not a folder";
+      remedy = "name a file, not a directory";
       break;
     case ENAMETOOLONG:
       remedy = "give a shorter name";

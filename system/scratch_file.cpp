@@ -86,7 +86,7 @@ void ScratchFile::fail(int error_number) const {
       scene::ErrorCode::bad_input, subject_,
       fmt::format("its samples, {} unpacked, cannot be kept in {}: {}", size_in_words(bytes_), folder_.string(),
                   std::generic_category().message(error_number)),
-      "free some space there, set TMPDIR to another folder, or convert it to .bricks once and render that");
+      "free some space there, set TMPDIR to another directory, or convert it to .bricks once and render that");
 }
 
 std::string size_in_words(std::uint64_t bytes) {

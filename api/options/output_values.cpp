@@ -39,10 +39,10 @@ Peel parse_peel(const std::string& word) {
 void set_peel(const OptionWords& words, RenderOptions& options) {
   options.frame.peel = parse_peel(words.word("peel"));
   if (!options.films.empty())
-    throw bad_input(fmt::format("`peel`: {} cannot hold layers; name pictures, as -o a_%04d.png, or leave `peel` out",
+    throw bad_input(fmt::format("`peel`: {} cannot hold layers; name images, as -o a_%04d.png, or leave `peel` out",
                                 options.films.front().string()));
   if (options.to_standard_output)
-    throw bad_input("`peel`: standard output takes one picture; name a file with -o, or leave `peel` out");
+    throw bad_input("`peel`: standard output takes one image; name a file with -o, or leave `peel` out");
   if (options.show_balance) throw bad_input("`peel`: `show` balance draws no layers; leave one of the two out");
   if (words.given("deep-accuracy"))
     throw bad_input("`deep_accuracy`: has no effect on the layers of `peel`; leave one of the two out");
@@ -54,22 +54,22 @@ void set_peel(const OptionWords& words, RenderOptions& options) {
 
 /// Throws for deep images of volumes that cannot be rendered.
 void refuse_deep_volumes(const RenderOptions& options) {
-  if (options.show_balance) throw bad_input("deep picture: `show` balance draws none; name an .exr, .png or .pfm");
+  if (options.show_balance) throw bad_input("deep image: `show` balance draws none; name an .exr, .png or .pfm");
   if (options.frame.peel) return;
   if (takes_steps(options.settings.integrator))
     throw bad_input(
-        fmt::format("deep picture: `integrator` {} gives a step other light than its parts; use auto or "
+        fmt::format("deep image: `integrator` {} gives a step other light than its parts; use auto or "
                     "exact",
                     method_word(options.settings.integrator.kind)));
-  if (options.settings.grid.shading) throw bad_input("deep picture: it is not shaded; leave `shade` out");
+  if (options.settings.grid.shading) throw bad_input("deep image: it is not shaded; leave `shade` out");
 }
 
 /// Throws for images that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
-  if (options.show_balance) throw bad_input("`show` balance: its pictures are not annotated; leave one of the two out");
+  if (options.show_balance) throw bad_input("`show` balance: its images are not annotated; leave one of the two out");
   if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
       !options.plan.outputs.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
-    throw bad_input("deep picture: it is not annotated; name an .exr, .png or .pfm too, or an `annotation_layer`");
+    throw bad_input("deep image: it is not annotated; name an .exr, .png or .pfm too, or an `annotation_layer`");
 }
 
 }  // namespace
@@ -100,12 +100,12 @@ void set_outputs(const OptionWords& words, RenderOptions& options) {
   options.saved_scene = words.word("save-config");
   options.report_to_standard_output = options.report == standard_stream;
   if (options.report_to_standard_output && options.to_standard_output)
-    throw bad_input("`report` -: the picture goes to standard output too; give one of them a file");
+    throw bad_input("`report` -: the image goes to standard output too; give one of them a file");
   options.plan.resume = words.given("resume");
   if (options.plan.resume && options.to_standard_output)
-    throw bad_input("`resume`: standard output has no earlier pictures; leave it out, or write numbered pictures");
+    throw bad_input("`resume`: standard output has no earlier images; leave it out, or write numbered images");
   if (options.plan.resume && !options.films.empty())
-    throw bad_input(fmt::format("`resume`: {} is made as a whole; leave it out, or write numbered pictures",
+    throw bad_input(fmt::format("`resume`: {} is made as a whole; leave it out, or write numbered images",
                                 options.films.front().string()));
   if (words.given("frame-rate") && options.films.empty())
     throw bad_input("`frame_rate`: is for films; name one with -o FILE.mp4, or leave it out");
@@ -121,7 +121,7 @@ void set_outputs(const OptionWords& words, RenderOptions& options) {
 void set_pictures(const OptionWords& words, RenderOptions& options) {
   options.frame.deep = std::ranges::any_of(options.plan.outputs, is_deep_name);
   if (!options.frame.deep && !words.given("peel") && words.given("deep-accuracy"))
-    throw bad_input("`deep_accuracy`: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
+    throw bad_input("`deep_accuracy`: is for a deep image; name one with -o FILE.deep.exr, or leave it out");
   assign(options.frame.deep_accuracy, words.positive("deep-accuracy"));
   if (words.given("peel")) set_peel(words, options);
   if (options.is_grid() && options.frame.deep) refuse_deep_volumes(options);

@@ -293,7 +293,7 @@ RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction&
   validate(view.size);
   const auto [x, y] = pixel;
   if (x < 0 || y < 0 || x >= view.size.width || y >= view.size.height)
-    throw scene::bad_input(fmt::format("probe: pixel ({}, {}) is not in a picture of {}x{}; count from 0", x, y,
+    throw scene::bad_input(fmt::format("probe: pixel ({}, {}) is not in an image of {}x{}; count from 0", x, y,
                                        view.size.width, view.size.height));
   constexpr std::size_t most_samples = 65536;
   if (samples < 2 || samples > most_samples)

@@ -115,7 +115,7 @@ void print_finding(const char* name, const MeshCheck::Finding& finding, const st
 void print_check(const MeshCheck& check) {
   fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
              check.clean() ? "every ray meets each place once"
-                           : "cells overlap, fold or do not match; pictures are wrong where cells overlap");
+                           : "cells overlap, fold or do not match; images are wrong where cells overlap");
   print_finding("overlapping pairs", check.overlaps,
                 fmt::format("{}, {} cells", check.more_overlaps ? " or more" : "", check.overlapping_cells), true);
   print_finding("folded tets", check.inverted);

@@ -230,10 +230,10 @@ std::string EmptyPictures::warning(const FinishedRun& run) const {
   const FilmFrame& frame = run.frames[first.frame];
   const bool has_surfaces = !run.options.settings.surfaces.empty() || !run.options.block_surfaces.empty();
   if (first.is_clear && !has_surfaces && frame.step == run.frames.front().step) return "";
-  const std::string which = run.frames.size() == 1 ? "the picture is empty"
-                            : first.count == 1     ? fmt::format("the picture of frame {} is empty", first.frame + 1)
-                                               : fmt::format("{} of {} pictures are empty, that of frame {} because",
-                                                             first.count, run.frames.size(), first.frame + 1);
+  const std::string which = run.frames.size() == 1 ? "the image is empty"
+                            : first.count == 1     ? fmt::format("the image of frame {} is empty", first.frame + 1)
+                                                   : fmt::format("{} of {} images are empty, that of frame {} because",
+                                                                 first.count, run.frames.size(), first.frame + 1);
   return fmt::format("{}: {}", which,
                      frame.step == run.step || first.reason == EmptyReason::clear
                          ? advice(first, run)
@@ -272,7 +272,7 @@ std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {
   tries.try_zooms(remedies);
   tries.try_scale(remedies);
   if (remedies.empty()) tries.add_camera(remedies);
-  return "all that is in the view is so thin that it lies between the centres of pixels; " + words_of(remedies);
+  return "all data in the view is so thin that it is between the centres of pixels; " + words_of(remedies);
 }
 
 }  // namespace tessera::apps

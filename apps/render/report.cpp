@@ -213,7 +213,7 @@ std::string cells_line(const MeshCounts& counts) {
 }
 
 std::string higher_order_note(double error, double accuracy) {
-  std::string note = fmt::format("tets that replace its higher-order cells change pixels of the first picture by {}",
+  std::string note = fmt::format("tets that replace its higher-order cells change pixels of the first image by {}",
                                  error < 1 ? fmt::format("about {:.2g}", error) : "any amount");
   if (error > accuracy)
     note += fmt::format(", more than --accuracy {:.2g}; --higher-order-tets allows more of them", accuracy);

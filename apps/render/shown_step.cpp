@@ -104,7 +104,7 @@ void ShownStep::choose_for_all_steps() {
   there = job_.broadcast(writing_rank_, std::move(there));
   for (std::size_t k = steps.size(); k-- > 1;)
     if (there[k] == std::byte{0}) {
-      output_.warn(fmt::format("time step {} is not there any more: field and colors go by others", steps[k]));
+      output_.warn(fmt::format("time step {} no longer exists: field and colors are chosen by other steps", steps[k]));
       steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(k));
     }
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {

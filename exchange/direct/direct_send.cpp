@@ -175,7 +175,7 @@ class Exchange {
     const PixelRect& r = header.rect;
     if (header.frame != task_.frame || !same(header.rows, rows) || r.x0 < rows.x0 || r.y0 < rows.y0 || r.x1 > rows.x1 ||
         r.y1 > rows.y1 || r.x0 > r.x1 || r.y0 > r.y1)
-      reader.refuse("is a packet of another picture");
+      reader.refuse("is a packet of another image");
     if (header.stopped != 0) result_.stopped = true;
     if (header.stopped != 0 || r.empty()) return reader.finish();
     if (scratch_.size.width != r.width() || scratch_.size.height != r.height())

@@ -96,8 +96,8 @@ void MpiPort::start() {
   State& s = *state_;
   if (!s.borrowed) s.checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
   MPI_Comm_set_errhandler(s.comm, MPI_ERRORS_RETURN);
-  s.checked(MPI_Comm_rank(s.comm, &s.rank), "tell the rank");
-  s.checked(MPI_Comm_size(s.comm, &s.size), "tell the number of ranks");
+  s.checked(MPI_Comm_rank(s.comm, &s.rank), "get the rank");
+  s.checked(MPI_Comm_size(s.comm, &s.size), "get the number of ranks");
   rank_ = s.rank;
   size_ = s.size;
   if (provided < MPI_THREAD_FUNNELED)

@@ -98,7 +98,7 @@ void RegionGather::place(const exchange::Message& message, std::uint64_t frame, 
   for (const PixelRect& r : rectangles)
     if (header.frame != frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height || r.x0 > r.x1 ||
         r.y0 > r.y1)
-      reader.refuse("is a rectangle of another picture");
+      reader.refuse("is a rectangle of another image");
   finished.stopped = finished.stopped || header.stopped != 0;
   for (const PixelRect& r : rectangles) {
     if (header.stopped != 0) break;

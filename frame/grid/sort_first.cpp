@@ -205,7 +205,7 @@ class SortFirst::State {
       for (const auto& [pixels, microseconds] : times.tiles)
         if (pixels.x0 < 0 || pixels.y0 < 0 || pixels.x1 > job.size.width || pixels.y1 > job.size.height ||
             !(microseconds >= 0) || !std::isfinite(microseconds))
-          reader.refuse("has times of pixels outside of the picture");
+          reader.refuse("has times of pixels outside of the image");
     }
     by_times_.learn(job, box, ranks);
   }

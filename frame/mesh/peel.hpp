@@ -17,7 +17,7 @@ namespace tessera::frame {
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes);
 
 /// The name of the requested result in messages: `peel` or "deep picture".
-inline const char* deep_word(bool peeled) { return peeled ? "`peel`" : "deep picture"; }
+inline const char* deep_word(bool peeled) { return peeled ? "`peel`" : "deep image"; }
 
 /// Image n contains sample n of each pixel.
 std::vector<scene::Image> layer_images(const scene::DeepImage& layers, int count);

@@ -362,7 +362,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     statistics.integrator = integrator.name();
     statistics.composited_on = run.device.name;
     if (sums.failed_devices > 0)
-      statistics.composited_on += fmt::format(", of which {} failed and left the rest to the CPU", sums.failed_devices);
+      statistics.composited_on += fmt::format("; {} failed, the CPU did the rest", sums.failed_devices);
     finished.stopped = sums.stopped > 0;
     finished.overlapping = sums.overlapping > 0;
     ++left;

@@ -83,7 +83,7 @@ void check(const DistributedSettings& settings) {
     throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
   if (settings.frame.by_depth() && settings.exchange == Exchange::runs)
     throw scene::bad_input(fmt::format("`exchange` runs: {} needs the segments that runs are made of; use segments",
-                                       settings.frame.peel ? "`peel`" : "a deep picture"));
+                                       settings.frame.peel ? "`peel`" : "a deep image"));
   const scene::Integrator& integrator = settings.render.integrator;
   if (settings.exchange == Exchange::runs && integrator.kind == scene::IntegratorKind::automatic &&
       !scene::error_budget::runs_keep(integrator.accuracy))

@@ -28,7 +28,7 @@ inline namespace v0_1 {
 TESSERA_EXPORT void write_image(const Image& image, const std::filesystem::path& file,
                                 const ImageFileOptions& options = {});
 
-// The bytes that write_image() writes into a .png, .exr or .jpg file, in memory. They throw as it does, with "picture"
+// The bytes that write_image() writes into a .png, .exr or .jpg file, in memory. They throw as it does, with "image"
 // as the file's name.
 TESSERA_EXPORT std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& options = {});
 TESSERA_EXPORT std::vector<std::byte> exr_bytes(const Image& image, const ImageFileOptions& options = {});

@@ -27,10 +27,11 @@ system::PositionalFile open_input(const std::filesystem::path& file) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status) && error != std::errc::permission_denied) throw system::missing_file(file);
   if (std::filesystem::is_directory(status))
-    throw scene::bad_input(fmt::format(
-        "{}: it is a directory; name a file in it, or the folder of an OpenFOAM case, an AMReX plot file or of DICOM "
-        "files",
-        file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: it is a directory; name a file in it, or the directory of an OpenFOAM case, an AMReX plot "
+                    "file or of DICOM "
+                    "files",
+                    file.string()));
   system::PositionalFile opened(file);
   const std::uint64_t size = opened.size();
   // An empty .foam file only marks its directory as an OpenFOAM case.

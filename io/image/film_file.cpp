@@ -256,7 +256,7 @@ FilmFile::~FilmFile() = default;
 void FilmFile::add(const Image& image) {
   State& s = *state_;
   if (image.size != s.size)
-    throw bad_input(fmt::format("{}: a picture of {}x{} among those of {}x{}; give all one size", s.file.string(),
+    throw bad_input(fmt::format("{}: an image of {}x{} among those of {}x{}; give all one size", s.file.string(),
                                 image.size.width, image.size.height, s.size.width, s.size.height));
   const io::DisplayRows display(image, s.file, s.options.image, 3);
   std::vector<float> rgba;
@@ -269,7 +269,7 @@ void FilmFile::add(const Image& image) {
       if (sent < 0 && errno == EINTR) continue;
       if (sent < 0) {
         s.end();
-        s.fail("it ended before the last picture");
+        s.fail("it ended before the last image");
       }
       next += sent;
       left -= static_cast<std::size_t>(sent);

@@ -114,7 +114,7 @@ void writing(const std::filesystem::path& file, const Work& work) {
 /// Lets OpenEXR write into memory.
 class MemoryStream : public Imf::OStream {
  public:
-  MemoryStream() : Imf::OStream("picture") {}
+  MemoryStream() : Imf::OStream("image") {}
   void write(const char bytes[], int count) override {
     const auto size = static_cast<std::size_t>(count);
     if (bytes_.size() < position_ + size) bytes_.resize(position_ + size);
@@ -144,7 +144,7 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
 
 std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
   MemoryStream stream;
-  writing("picture", [&] { encode(stream, image, "picture", options); });
+  writing("image", [&] { encode(stream, image, "picture", options); });
   return stream.take();
 }
 

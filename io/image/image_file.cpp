@@ -81,17 +81,17 @@ void check(const scene::Image& image, const std::filesystem::path& file, const I
 }  // namespace
 
 std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options) {
-  check(image, "picture", options);
+  check(image, "image", options);
   return png_bytes(image, options);
 }
 
 std::vector<std::byte> checked_exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
-  check(image, "picture", options);
+  check(image, "image", options);
   return exr_bytes(image, options);
 }
 
 std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const ImageFileOptions& options) {
-  check(image, "picture", options);
+  check(image, "image", options);
   return jpeg_bytes(image, options);
 }
 
@@ -117,7 +117,8 @@ scene::Image read_image(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw system::missing_file(file);
-  if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
+  if (std::filesystem::is_directory(status))
+    throw scene::bad_input(file.string() + ": is a directory; name a file in it");
   try {
     switch (image_format_of(file)) {
       case ImageFormat::exr:

@@ -115,7 +115,7 @@ void write_jpeg(const scene::Image& image, const std::filesystem::path& file, co
 
 std::vector<std::byte> jpeg_bytes(const scene::Image& image, const ImageFileOptions& options) {
   Jpeg jpeg;
-  encode(jpeg, image, "picture", options);
+  encode(jpeg, image, "image", options);
   const auto* const first = reinterpret_cast<const std::byte*>(jpeg.bytes);
   return {first, first + jpeg.size};
 }

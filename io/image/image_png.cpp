@@ -151,7 +151,7 @@ void write_png(const scene::Image& image, const std::filesystem::path& file, con
 
 std::vector<std::byte> png_bytes(const scene::Image& image, const ImageFileOptions& options) {
   std::vector<std::byte> all;
-  encode(image, "picture", options, [&](const void* bytes, std::size_t count) {
+  encode(image, "image", options, [&](const void* bytes, std::size_t count) {
     const auto* const first = static_cast<const std::byte*>(bytes);
     all.insert(all.end(), first, first + count);
   });

@@ -12,7 +12,7 @@ void write_jpeg(const scene::Image& /*image*/, const std::filesystem::path& file
 }
 
 std::vector<std::byte> jpeg_bytes(const scene::Image& /*image*/, const ImageFileOptions& /*options*/) {
-  throw scene::bad_input("picture: this build leaves .jpg out; build with TESSERA_JPEG=ON, or use .png");
+  throw scene::bad_input("image: this build leaves .jpg out; build with TESSERA_JPEG=ON, or use .png");
 }
 
 }  // namespace tessera::io

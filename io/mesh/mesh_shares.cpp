@@ -95,8 +95,8 @@ std::vector<std::filesystem::path> exodus_files(const InputFile& input) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(all.back(), unknown))
       throw scene::bad_input(
-          fmt::format("{}: it is one of {} files of a mesh, of which {} is missing; put it next to it, or "
-                      "give this one another name to see it alone",
+          fmt::format("{}: it is one of {} files of a mesh, and {} is missing; put it next to it, or "
+                      "rename this one to see it alone",
                       file.string(), files, all.back().filename().string()));
   }
   return all;

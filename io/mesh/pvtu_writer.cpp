@@ -55,7 +55,7 @@ void PvtuWriter::commit() {
     std::filesystem::rename(left_over_[static_cast<std::size_t>(p)], name, error);
     if (error)
       throw scene::Error(scene::ErrorCode::system_failure,
-                         fmt::format("{}: cannot be written: {}; check the folder", name.string(), error.message()));
+                         fmt::format("{}: cannot be written: {}; check the directory", name.string(), error.message()));
     left_over_[static_cast<std::size_t>(p)] = name;
   }
   list_file.commit();

@@ -219,7 +219,7 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   std::vector<std::string> warnings;
   if (off)
     warnings.push_back(fmt::format(
-        "the transfer function's {:g} to {:g} would show next to nothing of the field's {:.6g} to {:.6g}: it is taken "
+        "the transfer function's {:g} to {:g} would show almost nothing of the field's {:.6g} to {:.6g}: it is taken "
         "for a preset and stretched over the field; `range` sets another range",
         color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
   if (stretches) {

@@ -75,7 +75,7 @@ std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pat
   }
   if (error)
     throw scene::bad_input(
-        fmt::format("{}: the folder cannot be listed: {}; check its name", input.string(), error.message()));
+        fmt::format("{}: the directory cannot be listed: {}; check its name", input.string(), error.message()));
   if (found.empty())
     throw scene::bad_input(fmt::format("{}: no file has such a name; it would be like {}", input.string(),
                                        fmt::format("{}{:0{}}{}", pattern.before, 1, pattern.width, pattern.after)));

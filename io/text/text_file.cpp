@@ -23,7 +23,8 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw system::missing_file(file);
-  if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
+  if (std::filesystem::is_directory(status))
+    throw scene::bad_input(file.string() + ": is a directory; name a file in it");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
   system::note_read(file);

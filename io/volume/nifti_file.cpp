@@ -202,7 +202,7 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
   // Components of a sample are further apart than its steps.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
     throw scene::bad_input(fmt::format(
-        "{}: dimension 5 holds {} components and {} steps; of those, write one alone, with at most 64 components",
+        "{}: dimension 5 holds {} components and {} steps; write only one of the two, with at most 64 components",
         file.string(), header.dim(5), volume.steps));
   volume.components = static_cast<int>(header.dim(5));
   volume.planar = true;

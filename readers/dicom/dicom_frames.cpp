@@ -148,7 +148,7 @@ void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSli
                 "thickness",
                 apart)
           : "its frames state neither their positions nor their distance: one after the other, 1 mm apart, "
-            "which is wrong if they are times of one picture";
+            "which is wrong if they are times of one image";
 }
 
 }  // namespace

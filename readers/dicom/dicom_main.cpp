@@ -40,7 +40,7 @@ void note_left_out(const std::vector<std::filesystem::path>& files, const std::v
     }
   }
   if (count > 0)
-    notes.push_back(fmt::format("{} DICOM file{} without a picture that GDCM can read left out, first {}", count,
+    notes.push_back(fmt::format("{} DICOM file{} without an image that GDCM can read left out, first {}", count,
                                 count > 1 ? "s" : "", first));
 }
 
@@ -154,10 +154,10 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
     if (one.empty())
       throw scene::bad_input(
           io::looks_like_dicom(io::read_beginning(file, 132))
-              ? fmt::format("{}: it is DICOM, and GDCM finds no pictures in it: it is a report, plan or list, or ends "
-                            "within its header; give a folder or a file of slices",
+              ? fmt::format("{}: it is DICOM, and GDCM finds no images in it: it is a report, plan or list, or ends "
+                            "within its header; give a directory or a file of slices",
                             source)
-              : fmt::format("{}: GDCM finds no pictures in it; give a folder or a file of slices", source));
+              : fmt::format("{}: GDCM finds no images in it; give a directory or a file of slices", source));
     if (one.front().frames > 1) {
       slices = one;
     } else {
@@ -167,7 +167,7 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
     }
   }
   if (slices.empty())
-    throw scene::bad_input(fmt::format("{}: none of its files is a DICOM picture; give a folder of slices", source));
+    throw scene::bad_input(fmt::format("{}: none of its files is a DICOM image; give a directory of slices", source));
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   DicomVolume volume = volume_of(std::move(slices), file, time_step, source);

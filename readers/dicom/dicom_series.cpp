@@ -57,13 +57,13 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
                               [&](const auto& a, const auto& b) { return samples_of(a) < samples_of(b); });
   if (chosen->front().components != 1)
     throw scene::bad_input(
-        fmt::format("{}: its pictures are coloured, of {} numbers a sample, no values of a volume; "
+        fmt::format("{}: its images are coloured, of {} numbers a sample, no values of a volume; "
                     "give a series of one number a sample",
                     source, chosen->front().components));
   if (chosen->front().is_mosaic)
     throw scene::bad_input(
-        fmt::format("{}: its slices are side by side in one picture (Siemens' mosaic), which is not read; convert it: "
-                    "dcm2niix FOLDER",
+        fmt::format("{}: its slices are side by side in one image (Siemens' mosaic), which is not read; convert it: "
+                    "dcm2niix DIRECTORY",
                     source));
   if (groups.size() > 1)
     notes.push_back(fmt::format(
@@ -98,8 +98,8 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   const auto most =
       std::max_element(stacks.begin(), stacks.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (stacks.size() > 1)
-    notes.push_back(fmt::format("its frames have {} directions or spacings, of which the {} of one are read",
-                                stacks.size(), most->size()));
+    notes.push_back(fmt::format("its frames have {} directions or spacings; only the {} of one are read", stacks.size(),
+                                most->size()));
   return std::move(*most);
 }
 
@@ -304,12 +304,12 @@ DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::pat
         fmt::format("{}: all its segments are in one slice, which is not a volume; give a volume", source));
   if (volume.slices.size() == 1 && first.frames > 1)
     throw scene::bad_input(
-        fmt::format("{}: all its {} frames are at one place: times of one picture, not a volume; give a volume", source,
+        fmt::format("{}: all its {} frames are at one place: times of one image, not a volume; give a volume", source,
                     first.frames));
   if (volume.slices.size() == 1)
     throw scene::bad_input(
         fmt::format("{}: it is a single slice, without others of its series next to it; give a "
-                    "folder of slices",
+                    "directory of slices",
                     source));
   if (!first.has_position)
     volume.notes.push_back(fmt::format(

@@ -194,7 +194,7 @@ void read_processors(Holdings& holdings, ProcessorReader& reader, const std::fil
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
   if (const int folders = processor_folders(folder); processors != folders)
     throw scene::bad_input(
-        fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar again",
+        fmt::format("{}: of its {} processors' directories {} can be read; run reconstructPar, or decomposePar again",
                     source, folders, processors));
   const auto count = static_cast<std::uint64_t>(processors);
   const std::uint64_t last = cells::first_of_part(count, part + 1, parts);
@@ -227,7 +227,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   if (!is_decomposed && !std::filesystem::is_directory(folder / "constant", unknown))
     throw scene::bad_input(fmt::format(
         "{}: there is no mesh of OpenFOAM next to it, constant/polyMesh or processor0/constant/polyMesh; move "
-        "it into the folder of a case, or name that folder",
+        "it into the directory of a case, or name that directory",
         source));
   require_mesh_files(folder, source);
   require_regular_files(folder, source);

@@ -183,9 +183,8 @@ class PartOf {
     std::string family = function.getElementFamily();
     if (family.empty()) family = "some";
     return fmt::format(
-        "the field '{}' is a finite-element function ({} of degree {}) and is left out, for such are not read; write "
-        "its "
-        "values at points or cells (FEniCS: write in place of write_checkpoint)",
+        "the field '{}' is a finite-element function ({} of degree {}) and is left out: these are not "
+        "supported; write its values at points or cells (FEniCS: write instead of write_checkpoint)",
         function.getName(), family, function.getElementDegree());
   }
 

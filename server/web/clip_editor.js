@@ -23,7 +23,7 @@ export class ClipEditor {
   /** @param {Page} page */
   constructor(page) {
     this.page = page;
-    this.box_on = checkbox("Clip by a box", (on) => this.#set_box(on ? this.#bounds() : undefined, false), "Cut away what lies outside of the box");
+    this.box_on = checkbox("Clip by a box", (on) => this.#set_box(on ? this.#bounds() : undefined, false), "Cut away what is outside of the box");
     this.sliders = ["x", "y", "z"].map((axis, i) => new DoubleSlider(axis, (ends, moving) => {
       const box = this.#box() ?? this.#bounds();
       [box[i], box[i + 3]] = ends;
@@ -32,7 +32,7 @@ export class ClipEditor {
     this.box = element("div", { class: "group" }, ...this.sliders.map((s) => s.element));
     this.planes = element("div", { class: "group" });
     this.element = element("div", { class: "clip" }, element("div", { class: "checks" }, this.box_on.label), this.box, this.planes,
-      element("div", { class: "buttons" }, button("Add a clip plane", () => this.#add_plane(), { title: "Cut away what lies behind a plane" })));
+      element("div", { class: "buttons" }, button("Add a clip plane", () => this.#add_plane(), { title: "Cut away what is behind a plane" })));
   }
 
   begin() {}

@@ -79,7 +79,7 @@ export class FunctionPanel {
     this.curve = element("div", { class: "curve-row" }, this.editor.element, this.point_row);
 
     this.few = button("Edit colours", () => this.editor.edited && this.#edit(functions.with_few_colors(this.editor.edited), false),
-      { title: "Keep the few colours that say most, each with a handle on the bar" });
+      { title: "Keep the few colours that matter most, each with a handle on the bar" });
 
     this.low = typed("Low end of the range", (text) => this.#type_range(text, undefined));
     this.high = typed("High end of the range", (text) => this.#type_range(undefined, text));

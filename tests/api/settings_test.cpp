@@ -158,7 +158,7 @@ TEST(ValidSettings, ThoseOfAFrameAreFitForItsSession) {
     Settings steps;
     steps.integrator = {.kind = IntegratorKind::sampled, .samples = 4};
     EXPECT_EQ(words(layers, steps, data).find("`peel`: "), 0u);
-    EXPECT_EQ(words(deep, steps, data).find("deep picture: "), 0u);
+    EXPECT_EQ(words(deep, steps, data).find("deep image: "), 0u);
   }
   Settings scanline;
   scanline.mesh.rasterizer = Rasterizer::scanline;

@@ -200,7 +200,7 @@ ROWS = [
     row("render m.vtu -o - --size 16x16", "make room or close the pipe later", terminal="full", after={"x": ""}),
     row(
         "render - -o a.png --size 16x16",
-        "or set TMPDIR to another folder",
+        "or set TMPDIR to another directory",
         "render s.ply -o a.png --size 16x16",
         stdin="s.ply",
         before={"s.ply": SURFACE},

@@ -43,7 +43,7 @@ EXCEPTIONS = {
     r"^io/mesh/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
     r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
     r"^io/(volume/brick_file\.cpp:\d+: `block`|mesh/surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),
-    r"^io/image/film_file\.cpp:\d+: (: is not a film|\{\}: a picture of)": (2, LIBRARY),
+    r"^io/image/film_file\.cpp:\d+: (: is not a film|\{\}: an image of)": (2, LIBRARY),
     r"^io/(scene/time_series\.cpp:\d+: \{\}: is not a time|volume/volume_reader\.cpp:\d+: \{\}: it does not begin as a \{\}vol)": (
         2,
         LIBRARY,

@@ -261,11 +261,11 @@ ROWS = [
     # OpenFOAM
     row(
         "info case.foam",
-        "move it into the folder of a case, or name that folder",
+        "move it into the directory of a case, or name that directory",
         "info case/case.foam",
         {"case.foam": "", **FOAM, "case/case.foam": ""},
     ),
-    row("info case.foam", "or name that folder", "info case", {"case.foam": "", **FOAM}),
+    row("info case.foam", "or name that directory", "info case", {"case.foam": "", **FOAM}),
     row("info case", "is not a regular file; remove it", None, {**FOAM, "case/0/x": ("link", "/dev/null")}, {"case/0/x": None}),
     row("info case", "write it again", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
     row(
@@ -322,8 +322,8 @@ ROWS = [
         "of 3 numbers a sample, no values of a volume; give a series of one number a sample",
         **{str(k): dicom(k, samples=3, bits=8, pixels=bytes(12)) for k in (1, 2, 3)},
     ),
-    row("info ct", "give a folder of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),
-    ct("give a folder", **{str(k): bytes(128) + b"DICM" + b"?" * 40 for k in (1, 2, 3)}),
+    row("info ct", "give a directory of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),
+    ct("give a directory", **{str(k): bytes(128) + b"DICM" + b"?" * 40 for k in (1, 2, 3)}),
     ct("write it again or leave it out", **{"2": dicom(2)[:-4]}),
     ct("may be missing", "info ct", None, {**SLICES, "ct/4.dcm": dicom(4)}, **{"4": dicom(5, position=5)}),
     ct(
@@ -335,7 +335,7 @@ ROWS = [
     ),
     row(
         "info f.dcm",
-        "times of one picture, not a volume; give a volume",
+        "times of one image, not a volume; give a volume",
         None,
         {"f.dcm": dicom_frames((1, 1, 1))},
         {"f.dcm": dicom_frames((1, 2, 3))},
@@ -361,7 +361,7 @@ ROWS = [
     ),
     ct("segimage2itkimage", **{str(k): packed(dicom(k, bits=1, pixels=FRAGMENTS)) for k in (1, 2, 3)}),
     ct("bits, which are not read; write 8, 16 or 32", **{str(k): dicom(k, bits=4) for k in (1, 2, 3)}),
-    row("info a.dcm", "GDCM finds no pictures in it; give a folder or a file of slices", "info ct", {**SLICES, "a.dcm": "text"}),
+    row("info a.dcm", "GDCM finds no images in it; give a directory or a file of slices", "info ct", {**SLICES, "a.dcm": "text"}),
     ct("there is no time step 5", "info ct --time-step 5", "info ct"),
     # formats that are not supported, and those of solvers
     row("info a.nek5000", "save it as .vtu in ParaView", "info m.vtu", {"a.nek5000": "nothing"}),
@@ -377,7 +377,7 @@ ROWS = [
     row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
     row(
         "info a.dcm",
-        "give a folder or a file of slices",
+        "give a directory or a file of slices",
         "info ct",
         {**SLICES, "a.dcm": bytes(128) + b"DICM" + b"?" * 40},
     ),

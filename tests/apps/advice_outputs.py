@@ -33,13 +33,13 @@ ROWS = [
     row("render m.vtu -o a.bmp", "end it in .exr, .png", R),
     row(
         "render m.vtu -o nowhere/a.png",
-        "make the folder first, or name another",
+        "make the directory first, or name another",
         "render m.vtu -o folder/a.png",
         {"folder/": "", "folder.png/": ""},
     ),
     row(
         "render m.vtu -o folder.png",
-        "name a file, not a folder",
+        "name a file, not a directory",
         "render m.vtu -o folder/a.png",
         {"folder/": "", "folder.png/": ""},
     ),
@@ -88,7 +88,7 @@ ROWS = [
     row("chart m.vtu -o a.png", "see tessera chart --help", "chart --help"),
     row(
         "render m.vtu -o a.mp4 --peel 0.5 --size 16x16",
-        "name pictures, as -o a_%04d.png",
+        "name images, as -o a_%04d.png",
         "render m.vtu -o a_%04d.png --peel 0.5 --size 16x16",
     ),
     row("render m.vtu -o - --peel 0.5 --size 16x16", "name a file with -o", "render m.vtu -o a.png --peel 0.5 --size 9x9"),
@@ -102,7 +102,7 @@ ROWS = [
     ),
     row(
         "render m.vtu -o a.gif --size 16x16 --resume",
-        "leave it out, or write numbered pictures",
+        "leave it out, or write numbered images",
         "render m.vtu -o a_%04d.png --orbit 2 --size 16x16 --resume",
     ),
     row(
@@ -129,7 +129,7 @@ ROWS = [
     row("convert v.vti w.raw", "read it with --dims 8x8x8 --type", "info w.raw --dims 8x8x8 --type float32"),
     row("render m.vtu -o a.deep.exr --size 16x16 --integrator sampled:4 --outline", "name an .exr", R + "--outline"),
     row(f"render m.vtu -o {'n' * 300}.png --size 16x16", "give a shorter name", R),
-    row("render m.vtu -o /sys/a.png --size 16x16", "name a folder you may write in", R),
+    row("render m.vtu -o /sys/a.png --size 16x16", "name a directory you may write in", R),
     # disks, directories and films
     row("render m.vtu -o loop/a.png --size 16x16", "check the disk and the file system", R, {"loop": ("link", "loop")}),
     row(

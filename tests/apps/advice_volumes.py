@@ -245,7 +245,7 @@ ROWS = [
     ),
     # NIfTI and Analyze
     nii(nifti((6, 2, 2, 2, 1, 1, 2)), "a volume has three, time and components, write one alone", SAMPLES * 2),
-    nii(nifti((5, 2, 2, 2, 2, 2)), "of those, write one alone, with at most 64 components", SAMPLES * 4),
+    nii(nifti((5, 2, 2, 2, 2, 2)), "write only one of the two, with at most 64 components", SAMPLES * 4),
     nii(nifti(datatype=32), "write integers or 32 or 64-bit floats"),
     nii(nifti((9, 2, 2, 2)), "the file is truncated or damaged, write it again"),
     nii(nifti((4, 2, 2, 2, 3)), ", of 3 steps, are"),

@@ -166,7 +166,7 @@ TEST(Annotations, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
   }
   const auto deep = tessera({"render", folder.cube(), "--size", "20x20", "-o", folder / "a.deep.exr", "--outline"});
   EXPECT_EQ(deep.status, 2);
-  EXPECT_NE(deep.err.find("deep picture: it is not annotated"), std::string::npos) << deep.err;
+  EXPECT_NE(deep.err.find("deep image: it is not annotated"), std::string::npos) << deep.err;
 }
 
 TEST(Annotations, AMachineWithoutFontsIsToldOf) {

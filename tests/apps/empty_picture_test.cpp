@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr std::string_view empty = "the picture is empty";
+constexpr std::string_view empty = "the image is empty";
 
 /// A bar of five hexahedra along (1, 0, 0), so thin that it contains no pixel centre, with the field x.
 std::string bar(double thickness) {
@@ -93,7 +93,7 @@ TEST_F(EmptyPicture, OfABarBetweenPixelsNamesSizeZoomAndScale) {
   EXPECT_FALSE(shows_something(picture));
   EXPECT_NE(outcome.err.find("tessera: warning: " + mesh + ": " + std::string(empty)), std::string::npos)
       << outcome.err;
-  EXPECT_NE(outcome.err.find("so thin that it lies between"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("so thin that it is between"), std::string::npos) << outcome.err;
   expect_remedies(mesh, words, outcome.err, {"--size", "--zoom", "--scale"});
 }
 
@@ -122,7 +122,7 @@ TEST_F(EmptyPicture, OfAThinGridNamesRemediesToo) {
   const std::string grid = folder.file("g_2x2x2_uint8.raw", std::string("\0\1\2\3\4\5\6\7", 8));
   const Names words = {"--spacing", "1,0.002,0.002", "--view", "front"};
   const Outcome outcome = render(grid, words);
-  EXPECT_NE(outcome.err.find("so thin that it lies between"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("so thin that it is between"), std::string::npos) << outcome.err;
   expect_remedies(grid, words, outcome.err, {"--size", "--zoom", "--scale"});
 }
 
@@ -209,9 +209,9 @@ TEST_F(EmptyPicture, OfAFilmAreCounted) {
   const Outcome outcome =
       tessera({"render", mesh, "-o", folder / "f_%d.png", "--size", "32x32", "--orbit", "3", "--elevation", "20"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("3 of 3 pictures are empty, that of frame 1 because: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("3 of 3 images are empty, that of frame 1 because: "), std::string::npos) << outcome.err;
   const Outcome quiet = tessera({"render", mesh, "-o", folder / "q.png", "--size", "32x32", "--quiet"});
-  EXPECT_NE(quiet.err.find("the picture is empty"), std::string::npos) << quiet.err;
+  EXPECT_NE(quiet.err.find("the image is empty"), std::string::npos) << quiet.err;
   EXPECT_EQ(quiet.error_lines(), 1u) << quiet.err;
 }
 

@@ -114,7 +114,7 @@ TEST(Peeling, WhatItCannotDoIsOneLineOfOptionAndRemedy) {
     if (*bad != 0) expect(mesh, joined(picture, {std::string("--peel=") + bad}), "an opacity above 0 and below 1");
   for (const char* bad : {"0.5:0", "0.5:65", "0.5:", "0.5:1.5", "0.5:many", "0.5:nan"})
     expect(mesh, joined(picture, {"--peel", bad}), "1 to 64");
-  expect(mesh, {"-o", folder / "a.mp4", "--peel", "0.5"}, "name pictures");
+  expect(mesh, {"-o", folder / "a.mp4", "--peel", "0.5"}, "name images");
   expect(mesh, {"-o", "-", "--peel", "0.5"}, "name a file");
   for (const std::string& input : {mesh, grid}) {
     expect(input, joined(picture, {"--peel", "0.5", "--integrator", "preintegrated"}), "use auto or exact");

@@ -45,7 +45,7 @@ TEST(SettingWords, ErrorLinesNameOptions) {
       {{"--rasterizer", "scanline", "--projection", "perspective"},
        "--rasterizer scanline: it projects orthographically only; use an orthographic view, or --rasterizer planes"},
       {{"--integrator", "sampled:4", "-o", folder / "d.deep.exr"},
-       "deep picture: --integrator sampled:4 gives a segment other light than its parts; use exact or auto"},
+       "deep image: --integrator sampled:4 gives a segment other light than its parts; use exact or auto"},
       {{"--compositor", "gl-fragment", "--backend", "osmesa", "--exchange", "runs"},
        "--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments"},
       {{"--backend", "osmesa,cpu"}, "--backend: 2 words for 1 compositors; give one, or one for each"},

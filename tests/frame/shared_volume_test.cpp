@@ -170,7 +170,7 @@ TEST_F(SharedVolume, WithoutRoomForItEndsTheRunForAllWithARemedy) {
   ::setenv("TMPDIR", (scratch_ / "nowhere").c_str(), 1);
   const test::Fault ended = fault(file, 3);
   EXPECT_EQ(ended.code, scene::ErrorCode::bad_input);
-  for (const std::string part : {"v.nii.gz", "nowhere", "set TMPDIR to another folder"})
+  for (const std::string part : {"v.nii.gz", "nowhere", "set TMPDIR to another directory"})
     EXPECT_NE(ended.message.find(part), std::string::npos) << ended.message;
   // A single process needs none.
   EXPECT_EQ(opened(file, 1).size(), 1u);

@@ -235,7 +235,7 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
   folder.write("plan.dcm", std::string(128, '\0') + "DICM" + element(2, 0x10, "UI", "1.2.840.10008.1.2.1"));
   const VolumeFile others = open_volume(folder.path());
   EXPECT_EQ(others.source->geometry().points, (GridIndex{4, 3, 3}));
-  EXPECT_TRUE(has_note(others, "1 DICOM file without a picture that GDCM can read left out, first plan.dcm"));
+  EXPECT_TRUE(has_note(others, "1 DICOM file without an image that GDCM can read left out, first plan.dcm"));
   expect_no_volume(folder / "plan.dcm", "plan.dcm");
   const std::string whole = dicom({.z = 1, .samples = twelve(1)});
   folder.write("1.dcm", whole.substr(0, whole.size() - 10));
@@ -251,7 +251,7 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
     EXPECT_EQ(fault.message.find('\n'), std::string::npos) << fault.message;
     EXPECT_TRUE(fault.message.empty() || fault.code == scene::ErrorCode::bad_input) << fault.message;
   }
-  expect_no_volume(folder.write("text.dcm", std::string(200, 'x')), "GDCM finds no pictures");
+  expect_no_volume(folder.write("text.dcm", std::string(200, 'x')), "GDCM finds no images");
   expect_no_volume(folder.write("cut.dcm", whole.substr(0, 300)), "ends within its header");
 }
 

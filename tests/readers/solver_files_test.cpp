@@ -265,7 +265,7 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   expect_cube(read_mesh(folder.path()), 4);
   // An image without one of the parts would be wrong.
   std::filesystem::remove_all(folder / "processor1" / "constant");
-  test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processors' folders 1 can be read"});
+  test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processors' directories 1 can be read"});
 }
 
 TEST(SolverFiles, RegionsOfADecomposedOpenFoamCaseAreBlocksOfAllProcessors) {

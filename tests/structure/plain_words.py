@@ -6,7 +6,7 @@ have to decode: verbs of speaking for data, pronouns for things, clipped clauses
 PHRASES is the table, EXCEPTIONS lists legitimate uses. Of C++ sources only DIRECTORIES, which have been edited already,
 are checked. Text in backquotes or double quotes is code or a quotation, and is ignored, as are the options and
 placeholders (in capitals) of scripts. String literals of several words, in all directories but tests/ and bench/, are
-checked for the phrases of IN_MESSAGES.
+messages and help texts, and are checked too, as are those of the server's page.
 
 Reports each phrase as file:line with its replacement; exit status 1 if there is one. First checks itself: every row of
 the table must refuse its own example, and no row may refuse PLAIN.
@@ -61,19 +61,17 @@ say, the list, is no longer such as the file "says"; there are none that stand f
 # Words for users, which messages use, too.
 NOT_IN_MARKDOWN = {"image, frame", "directory"}
 
-# What to write instead of phrases that messages and help texts avoid too.
-IN_MESSAGES = """receive, be called with|no caller, the caller|again, newly|again|fix, correct|does not support|
-next to, in addition to, in parallel with|is not a, does not support|is not one, is invalid, is empty""".replace(
-    "\n", ""
-).split("|")
-
 # (pattern, reason) of legitimate uses, removed from the text before the table is applied. Each must occur.
 EXCEPTIONS = [
     (r"\bthe last of which\b", "a part of what precedes it, like none of which"),
     (r"\b(scientists|developers|anyone|everyone) who\b", "people"),
-    (r"\b(about|and) so many (at most|pieces)\b|\bof the picture so many times\b", "help texts of options with N"),
+    (r"\bframe_ms and picture\b", "keys of a JSON file"),
     (r"\b(eye|opaque) beside\b", "names of scenes in docs/RESULTS.md, from bench/stability/scenes.py"),
 ]
+
+# Texts of the server's page: strings that are not parts of code in templates. Images are "pictures" there.
+PAGE_TOKEN = re.compile(r"(?P<comment>//[^\n]*|/\*.*?\*/)|\"(?:[^\"\\\n]|\\.)*\"|`(?:[^`\\]|\\.)*`", re.DOTALL)
+PAGE_CODE = re.compile(r"\$\{[^{}]*\}|\bpictures?\b", re.IGNORECASE)
 
 TOKEN = re.compile(
     r"""(?P<comment>//[^\n]*|/\*.*?\*/)
@@ -130,11 +128,11 @@ def paragraphs(source):
         yield source.count("\n", 0, match.start()) + 1, match[0]
 
 
-def messages(source):
+def messages(source, tokens=TOKEN):
     """(line, text) of each string literal of several words."""
-    for token in TOKEN.finditer(source):
-        if token[0].startswith(('"', 'R"')) and " " in token[0]:
-            yield source.count("\n", 0, token.start()) + 1, token[0].strip('R"')
+    for token in tokens.finditer(source):
+        if token[0].startswith(('"', 'R"', "`")) and " " in token[0]:
+            yield source.count("\n", 0, token.start()) + 1, token[0].strip('R"`')
 
 
 def refused(text, used=None):
@@ -169,11 +167,11 @@ def faults_in(texts, used):
             yield first + text.count("\n", 0, offset), phrase, instead
 
 
-def faults_in_messages(file):
-    for number, text in messages(file.read_text(encoding="utf-8")):
-        for _, phrase, instead in refused(text):
-            if instead in IN_MESSAGES:
-                yield number, f"message: {phrase} -> {instead}"
+def faults_in_messages(file, used):
+    page = file.suffix == ".js"
+    for number, text in messages(file.read_text(encoding="utf-8"), PAGE_TOKEN if page else TOKEN):
+        for _, phrase, instead in refused(PAGE_CODE.sub(blanked, text) if page else text, used):
+            yield number, f"message: {phrase} -> {instead}"
 
 
 def main():
@@ -192,8 +190,8 @@ def main():
                 faults.append(f"{file.relative_to(tree)}:{number}: {phrase} -> {instead}")
     sources = [f for f in sorted(tree.glob("*/**/*")) if f.suffix in SUFFIXES and f.is_file()]
     skipped = {"tests", "bench", "build", "examples"}
-    for file in [f for f in sources if f.relative_to(tree).parts[0] not in skipped]:
-        faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in_messages(file)]
+    for file in [f for f in sources if f.relative_to(tree).parts[0] not in skipped] + sorted(tree.glob("server/web/*.js")):
+        faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in_messages(file, used)]
     faults += [f"plain_words.py: nothing uses the exception {phrase}" for phrase, _ in EXCEPTIONS if phrase not in used]
     for fault in faults:
         print(fault)

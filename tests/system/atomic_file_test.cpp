@@ -194,10 +194,10 @@ TEST(AtomicFile, AKilledProcessLeavesNothing) {
 TEST(AtomicFile, RefusesWhereNothingCanBeWritten) {
   const TemporaryFolder folder;
   folder.write("file", "");
-  expect_bad_input([&] { system::AtomicFile(folder / "none/out"); }, {"none/out: ", "make the folder first"});
+  expect_bad_input([&] { system::AtomicFile(folder / "none/out"); }, {"none/out: ", "make the directory first"});
   expect_bad_input([&] { system::AtomicFile(folder / "file/out"); }, {"file/out: ", "folder"});
-  expect_bad_input([&] { system::AtomicFile(folder.path()); }, {"name a file, not a folder"});
-  expect_bad_input([&] { system::AtomicFile(folder.path().string() + "/"); }, {"name a file, not a folder"});
+  expect_bad_input([&] { system::AtomicFile(folder.path()); }, {"name a file, not a directory"});
+  expect_bad_input([&] { system::AtomicFile(folder.path().string() + "/"); }, {"name a file, not a directory"});
   expect_bad_input([&] { system::AtomicFile("/dev/null"); }, {"/dev/null: is not a regular file"});
   expect_bad_input([&] { system::AtomicFile(""); }, {"name a file"});
   expect_bad_input([&] { system::AtomicFile(folder / std::string(300, 'x')); }, {"shorter name"});
@@ -209,7 +209,7 @@ TEST(AtomicFile, RefusesAFolderWithoutTheRightToWrite) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TemporaryFolder folder;
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  expect_bad_input([&] { system::AtomicFile(folder / "out"); }, {"name a folder you may write in"});
+  expect_bad_input([&] { system::AtomicFile(folder / "out"); }, {"name a directory you may write in"});
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
 }
 

@@ -140,7 +140,7 @@ class HdfMesh {
 
   [[nodiscard]] GridNumbers read(const Hdf5Array& array, const Stretch& tuples) const {
     if (tuples.end() > array.lengths[0])
-      throw wrong(fmt::format("{} has {} tuples, of which {} to {} are asked for", scene::quote(array.path),
+      throw wrong(fmt::format("{} has {} tuples, not the requested {} to {}", scene::quote(array.path),
                               array.lengths[0], tuples.first, tuples.end()));
     std::vector<std::size_t> first(array.lengths.size(), 0), counts = array.lengths;
     first[0] = tuples.first, counts[0] = tuples.count;

@@ -146,9 +146,9 @@ TEST(ImageFile, MemoryRefusesWhatFilesDo) {
   scene::Image image = picture();
   if (has_jpeg())
     expect_bad_input([&] { checked_jpeg_bytes(image, {.jpeg_quality = 101}); },
-                     {"picture: the quality 101 is not 1 to 100"});
+                     {"image: the quality 101 is not 1 to 100"});
   image.rgba[4 * image.index(3, 2)] = 1e6f;
-  expect_bad_input([&] { checked_exr_bytes(image, {.half = true}); }, {"picture: pixel (3, 2)"});
+  expect_bad_input([&] { checked_exr_bytes(image, {.half = true}); }, {"image: pixel (3, 2)"});
   image.size.width = 0;
   expect_bad_input([&] { checked_exr_bytes(image, {}); }, {"size"});
 }
@@ -363,9 +363,9 @@ TEST(ImageFile, PathsAreCheckedBeforeRendering) {
   EXPECT_TRUE(folder.names().empty());
   expect_bad_input([&] { check_image_path(folder / "a.bmp"); }, {"a.bmp: ", ".exr, .png, .jpg, .tif or .pfm"});
   expect_bad_input([&] { check_image_path(folder / "exr"); }, {".exr, .png, .jpg, .tif or .pfm"});
-  expect_bad_input([&] { check_image_path(folder / "none/a.exr"); }, {"none/a.exr: ", "make the folder first"});
+  expect_bad_input([&] { check_image_path(folder / "none/a.exr"); }, {"none/a.exr: ", "make the directory first"});
   std::filesystem::create_directory(folder / "b.exr");
-  expect_bad_input([&] { check_image_path(folder / "b.exr"); }, {"name a file, not a folder"});
+  expect_bad_input([&] { check_image_path(folder / "b.exr"); }, {"name a file, not a directory"});
   expect_bad_input([&] { check_image_path("/proc/a.exr"); }, {"/proc/a.exr: "});
 }
 

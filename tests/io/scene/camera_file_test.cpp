@@ -209,8 +209,8 @@ TEST(CameraFile, RefusesBrokenPvcc) {
 TEST(CameraFile, RefusesAMissingFileAndAFolder) {
   const test::TemporaryFolder folder;
   expect_bad_input([&] { read_cameras(folder / "none.json"); }, {"none.json: there is no such file"});
-  expect_bad_input([&] { read_cameras(folder.path()); }, {"is a folder"});
-  expect_bad_input([&] { write_camera(oblique(), folder / "none/view.json"); }, {"none/view.json", "folder"});
+  expect_bad_input([&] { read_cameras(folder.path()); }, {"is a directory"});
+  expect_bad_input([&] { write_camera(oblique(), folder / "none/view.json"); }, {"none/view.json", "directory"});
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(TransferFunctionFile, RefusesWhatIsNeitherFileNorPreset) {
   expect_bad_input([] { load_transfer_function("no-such-thing", {}); },
                    {"no-such-thing: no such file and no preset", "viridis", "cool-warm"});
   const test::TemporaryFolder folder;
-  expect_bad_input([&] { load_transfer_function(folder.path(), {}); }, {"is a folder"});
+  expect_bad_input([&] { load_transfer_function(folder.path(), {}); }, {"is a directory"});
   expect_bad_input([&] { load_transfer_function(folder.write("empty", ""), {}); }, {"no knot"});
 }
 

@@ -163,7 +163,7 @@ test("with that option it works behind the proxy, below a path", async () => {
     await page.context().close();
     // Without the slash the page's own parts are asked for elsewhere: the page itself says so.
     const bare = await opened(`http://localhost:${proxy.port}/p${printed.search}`);
-    await bare.getByText("the address has to end with a slash").waitFor();
+    await bare.getByText("the address must end with a slash").waitFor();
     assert.ok(await bare.getByText("--allow-host").isVisible());
     assert.ok((await bare.getByText("--allow-host").boundingBox()).y < 500, "it is seen at once");
     await bare.context().close();
