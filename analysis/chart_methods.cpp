@@ -52,7 +52,7 @@ class MeshMethods final : public MethodList {
     if (!planes && scene_.view.camera.projection != ProjectionKind::orthographic)
       method.left_out = "scanline takes orthographic views only";
     if (integrator.kind == IntegratorKind::partial && scene_.emission == Emission::independent)
-      method.left_out = "partial knows emission by absorption only";
+      method.left_out = "partial supports emission by absorption only";
     return method;
   }
   ChartMethod& plain(Rasterizer rasterizer, IntegratorKind kind, const char* word) {

@@ -91,7 +91,7 @@ LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_pre
 }
 
 MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
-  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which nothing can be wrong with; check meshes");
+  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, and only meshes are checked; give a mesh");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
   return api::check_mesh(state_->mesh, progress);

@@ -101,7 +101,7 @@ void write_tets_of(const scene::TetMeshView& mesh, const std::filesystem::path& 
 
 void write_mesh(const Dataset& mesh, const std::filesystem::path& file) {
   const Dataset::State& state = StateAccess::of(mesh);
-  if (mesh.is_grid()) throw scene::bad_input(state.source + ": is a grid, no mesh; use write_grid");
+  if (mesh.is_grid()) throw scene::bad_input(state.source + ": is a grid, not a mesh; use write_grid");
   if (state.ranks > 1)
     throw scene::bad_input(state.source + ": this rank has a part of the mesh; open it on one rank to write it");
   scene::TetMeshView view = state.mesh;
@@ -169,7 +169,7 @@ void check_grid_name(const std::filesystem::path& file) {
 
 void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
   const Dataset::State& state = StateAccess::of(grid);
-  if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
+  if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, not a grid; use write_mesh");
   check_grid_name(file);
   // Labels are written as in the file, at points.
   const auto* const labels = dynamic_cast<const scene::LabelSource*>(state.samples.get());

@@ -187,7 +187,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {
-  throw scene::bad_input("balance: images are of grids, and the data set is a mesh; leave them out");
+  throw scene::bad_input("balance: it is drawn for grids only, and the data set is a mesh; leave it out");
 }
 
 BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View& view,

@@ -54,7 +54,7 @@ void check_integrator_of_mesh(const Integrator& integrator, Emission emission) {
     throw scene::bad_input(
         fmt::format("`integrator` preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
   if (integrator.kind == IntegratorKind::partial && emission == Emission::independent)
-    throw scene::bad_input("`integrator` partial: knows emission by absorption only; use exact or auto");
+    throw scene::bad_input("`integrator` partial: supports emission by absorption only; use exact or auto");
 }
 
 void check_device_rasterizer(const DeviceSettings& device) {

@@ -177,7 +177,8 @@ void require_stack() {
   limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 8 * least);
   if (limit.rlim_cur < least || ::setrlimit(RLIMIT_STACK, &limit) != 0)
     throw Error(ErrorCode::system_failure, "stack",
-                std::to_string(limit.rlim_cur / 1024) + " KiB are all that this process may have", "ulimit -s 8192");
+                std::to_string(limit.rlim_cur / 1024) + " KiB are too few, and this process may not have more",
+                "ulimit -s 8192");
 }
 
 /// The stack of the first thread grows on demand. If the address space is limited, that may fail later, and the system

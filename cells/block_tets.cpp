@@ -96,8 +96,8 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
   if (shape.kind == CellKind::polyhedron || shape.kind == CellKind::convex_point_set)
     return split_polyhedron(c, shape.kind, work, out);
   if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
-    throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it has to have {}; correct the cell types",
-                                       source_, place(c), cell_type_name(type), nodes,
+    throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it must have {}; correct the cell types", source_,
+                                       place(c), cell_type_name(type), nodes,
                                        shape.nodes ? shape.nodes : shape.corners));
   const std::uint32_t* const first = all_tets ? block_.tets[c].data() : &block_.connectivity[block_.offsets[c]];
   const bool is_curved = shape.higher_order && curved_.lattice(c) != nullptr;

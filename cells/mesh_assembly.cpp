@@ -128,8 +128,7 @@ class Assembly {
     if (!field || summary == fields_.end() || field->components != summary->components) {
       if (block.cell_count() > 0 && !block.source.empty())
         throw scene::bad_input(fmt::format(
-            "{}: it has no {} field '{}' of {} as other pieces have; write all pieces "
-            "with the same fields",
+            "{}: it lacks the {} field '{}' of {} that other pieces have; write all pieces with the same fields",
             block.source, point ? "point" : "cell", choice_.name,
             summary == fields_.end() || summary->components == 1 ? "one component"
                                                                  : fmt::format("{} components", summary->components)));
@@ -355,17 +354,16 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   for (const auto& [kind, count, tangled] : kinds)
     if (count > 0 && tangled == count)
       warnings.push_back(
-          fmt::format("all {} {} are tangled, so that they are not drawn as they were meant: is the order of their "
-                      "nodes VTK's? It is another in many programs; write them in VTK's",
+          fmt::format("all {} {} are tangled, so they are drawn wrongly: the order of their nodes may not be VTK's; "
+                      "write them in VTK's order",
                       count, kind));
   if (n.cells_open > 0)
     warnings.push_back(
         fmt::format("{} polyhedra are left out: their faces do not form a closed surface", n.cells_open));
   if (n.polyhedra_tangled > 0)
-    warnings.push_back(
-        fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "
-                    "split them",
-                    n.polyhedra_tangled));
+    warnings.push_back(fmt::format(
+        "{} polyhedra are drawn by tets that overlap: their faces cross each other, or they could not be split",
+        n.polyhedra_tangled));
   if (n.cells_duplicate > 0)
     warnings.push_back(fmt::format(
         "{} cell{} the corners of other cells, as in parts of a mesh that are given twice, and {} drawn on top of "

@@ -43,7 +43,7 @@ void move_points(CellBlock& block, const BlockField& vector, double factor) {
 scene::Error no_such_vector(const std::string& name, std::span<const std::string> names, const std::string& source) {
   if (names.empty())
     return scene::bad_input(
-        fmt::format("{}: `warp`: it has no vector at its points, so none '{}'; leave it out", source, name));
+        fmt::format("{}: `warp`: it has no vectors at its points, so '{}' is not one; leave it out", source, name));
   const auto near = nearest_name(name, names);
   return scene::bad_input(fmt::format("{}: `warp`: no point vector '{}'; {}it has '{}'", source, name,
                                       near ? fmt::format("did you mean '{}'? ", *near) : "", fmt::join(names, "', '")));
@@ -84,7 +84,7 @@ void warp(MeshBlocks& read, const ReadOptions& options, const std::string& sourc
                             : fmt::format("nodes are displaced by {:g} times '{}'", by.factor, by.vector)},
             read.notes);
   if (moved < read.blocks.size())
-    add_notes({fmt::format("some blocks have no '{}': their nodes stay", by.vector)}, read.notes);
+    add_notes({fmt::format("some blocks have no '{}': their nodes are not moved", by.vector)}, read.notes);
 }
 
 }  // namespace tessera::cells

@@ -31,7 +31,7 @@ void take_deep(exchange::RecordReader& reader, const scene::PixelRect& rect, Dee
   reader.take_onto(counts, static_cast<std::uint64_t>(rect.area()));
   reader.take_onto(samples, count);
   if (std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) != count)
-    reader.refuse("has other deep samples than it counts");
+    reader.refuse("has a count of deep samples that does not match its data");
   if (to != nullptr) to->add(rect, std::move(counts), std::move(samples));
 }
 

@@ -27,7 +27,7 @@ void RecordReader::refuse_short() const { refuse("is shorter than it states"); }
 
 MessageReader::MessageReader(std::span<const std::byte> message, int from) : RecordReader(message, from) {
   const auto header = take<MessageHeader>();
-  if (header.magic != wire_magic) refuse("is of no wire version that is known");
+  if (header.magic != wire_magic) refuse("has an unknown wire version");
   if (header.version != wire_version)
     refuse(fmt::format("is of wire version {}, this rank's are of version {}", header.version, wire_version));
   kind_ = header.kind;
@@ -36,11 +36,11 @@ MessageReader::MessageReader(std::span<const std::byte> message, int from) : Rec
 MessageReader::MessageReader(std::span<const std::byte> message, int from, MessageKind awaited)
     : MessageReader(message, from) {
   if (kind_ != awaited)
-    refuse(fmt::format("is of kind {}, kind {} was awaited", static_cast<int>(kind_), static_cast<int>(awaited)));
+    refuse(fmt::format("is of kind {}, kind {} was expected", static_cast<int>(kind_), static_cast<int>(awaited)));
 }
 
 void MessageReader::refuse_kind() const {
-  refuse(fmt::format("is of kind {}, which is not awaited here", static_cast<int>(kind_)));
+  refuse(fmt::format("is of kind {}, which is not expected here", static_cast<int>(kind_)));
 }
 
 }  // namespace tessera::exchange

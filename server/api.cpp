@@ -132,7 +132,7 @@ std::optional<Response> answer_at_once(const Request& request, const ApiContext&
   const auto* const route =
       std::find_if(routes.begin(), routes.end(), [&](const Route& r) { return r.path == request.path; });
   if (route == routes.end())
-    return error_response(404, "There is nothing at this address; docs/SERVER.md has what there is.");
+    return error_response(404, "There is nothing at this address; docs/SERVER.md lists the addresses.");
   const bool is_get = request.method == "GET", is_post = request.method == "POST";
   if ((!is_get && !is_post) || (is_get && !route->get) || (is_post && !route->post))
     return error_response(405, fmt::format("Ask for {} by {}.", route->path, route->get ? "GET" : "POST"));

@@ -330,7 +330,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
       return refused(403, *why);
     if (!refusal && !admit()) {
       request_.keep_alive(false);
-      return refused(503, "The server has as many connections as it takes; close other pages of it.");
+      return refused(503, "The server has reached its limit of connections; close other pages of it.");
     }
     if (*path == "socket" && websocket::is_upgrade(request_)) return become_socket();
     if (is_api(*path))

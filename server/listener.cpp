@@ -56,8 +56,9 @@ struct Listener::State {
     if (error == asio::error::address_in_use)
       throw bad_input(fmt::format("--port: {} is in use; name another, or none for a free one", port));
     if (error == asio::error::access_denied)
-      throw bad_input(fmt::format("--port: {} is not for everybody to use; name one above 1023", port));
-    throw bad_input(fmt::format("--bind: {} cannot be listened at ({}); name an address of this machine", address,
+      throw bad_input(
+          fmt::format("--port: {} needs privileges that this process does not have; name one above 1023", port));
+    throw bad_input(fmt::format("--bind: {} is not an address to listen at ({}); name one of this machine", address,
                                 error.message()));
   }
 

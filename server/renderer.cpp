@@ -82,7 +82,7 @@ class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> 
     return result.waits_for_data ? Turn::waits_for_data : Turn::again;
   }
   void abandon() override {
-    if (reply_) answer(error_response(503, "The server ends, or has too much to do."));
+    if (reply_) answer(error_response(503, "The server is ending or overloaded."));
   }
   void stop() override { stop_.request_stop(); }
 

@@ -18,7 +18,7 @@ std::shared_ptr<boost::asio::ssl::context> tls_context(const std::filesystem::pa
                    context::no_tlsv1_1);
   // For TLS 1.2 only ciphers with forward secrecy and authenticated encryption; all of TLS 1.3 have both.
   if (::SSL_CTX_set_cipher_list(tls->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20:!PSK") != 1)
-    throw Error(ErrorCode::system_failure, "--tls-certificate", "this OpenSSL has no ciphers that are safe",
+    throw Error(ErrorCode::system_failure, "--tls-certificate", "this OpenSSL has no safe ciphers",
                 "use another OpenSSL, or an SSH tunnel");
   boost::system::error_code error;
   tls->use_certificate_chain_file(certificate.string(), error);

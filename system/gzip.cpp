@@ -144,8 +144,8 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
     const bool is_over = made > limit.bytes - written;
     if (is_over && !limit.stops)
       throw fail(scene::ErrorCode::bad_input,
-                 fmt::format("its {} bytes hold more than {} MiB, as no such data do", size, limit.bytes >> 20),
-                 "unpack it with gunzip if it is what it should be");
+                 fmt::format("its {} bytes hold more than {} MiB, which is out of proportion", size, limit.bytes >> 20),
+                 "unpack it with gunzip if that is right");
     const auto kept = static_cast<std::size_t>(std::min<std::uint64_t>(made, limit.bytes - written));
     written += kept;
     if (written > memory)
@@ -157,7 +157,7 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
     ended = result == Z_STREAM_END;
     if (!ended && result != Z_OK)  // Z_BUF_ERROR if the stream ends
       throw fail(scene::ErrorCode::bad_input,
-                 fmt::format("its compressed bytes end or break, {} come out of them", written),
+                 fmt::format("its compressed bytes end or break after {} unpacked ones", written),
                  "the file is truncated or damaged, write it again");
     if (ended && inflateReset(&z) != Z_OK) return written;
   }

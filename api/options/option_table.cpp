@@ -25,7 +25,7 @@ constexpr OptionRow input_rows[] = {
     {"out", "", generate | positional | required, "of a mesh .vtu or .tets; of a volume .vti .nrrd .raw .bricks"},
     {"parameters", "", generate | positional | list, "NAME=VALUE ..."},
     {"trace", "", timing | positional | list | required, "what render --timing wrote; several are compared"},
-    {"command", "", help | positional, "one of the commands; without it what there is"},
+    {"command", "", help | positional, "one of the commands; without it, the list of commands"},
     {"shell", "", completion | positional | required, "bash, zsh or fish"},
 };
 
@@ -34,7 +34,7 @@ constexpr OptionRow server_rows[] = {
     {"port", "PORT", serve, "to listen at (default: a free one)"},
     {"latency", "MS", serve,
      "while something moves: the image size is chosen for this time from event to image (default 100)"},
-    {"tls-certificate", "FILE", serve, "PEM file: speak https"},
+    {"tls-certificate", "FILE", serve, "PEM file: serve over https"},
     {"tls-key", "FILE", serve, "PEM file of its key"},
     {"allow-host", "NAME", serve | list,
      "a name in the browser's address, in addition to loopback and --bind; may be repeated"},
@@ -47,7 +47,7 @@ constexpr OptionRow data_rows[] = {
     {"warp", "NAME[:FACTOR]|off", reading | meshes | state | data,
      "meshes: move points by FACTOR (default: 1) times this vector; off: not even Exodus' displacements"},
     {"q", "FILE", reading | meshes | data, "PLOT3D solution file, if it is not next to the grid"},
-    {"max-volume", "VOLUME", reading | meshes | data, "surfaces: largest tetrahedron TetGen fills them with"},
+    {"max-volume", "VOLUME", reading | meshes | data, "surfaces: volume of the largest tetrahedron that fills them"},
     {"time-step", "STEP|all|FIRST:LAST[:STRIDE]", reading | basic | state | data,
      "Exodus, OpenFOAM, 4-D NIfTI, NRRD, .pvd ...: step counted from 0 (default: a file's last); render also makes "
      "a film of several"},
@@ -91,8 +91,8 @@ constexpr OptionRow color_rows[] = {
      "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)"},
     {"opacity,opacity-scale", "FACTOR", pictures | chart | basic | state | look | knots, "multiplies the extinction"},
     {"range", "MIN,MAX", pictures | basic | state | look | knots | range,
-     "values that colours and opacities span (default: the field's of a preset, of what is not asked for 0.5 to 99.5 % "
-     "of the volume; a file is stretched)"},
+     "values that colours and opacities span (default: the field's for a preset, 0.5 to 99.5 % of the volume without "
+     "one; a file is stretched)"},
     {"log", "", pictures | basic | flag | state | look | knots | range,
      "colours and opacities by the logarithm of the value"},
     {"opacity-points", "T:A,...", pictures | basic | state | look | knots,
@@ -108,8 +108,8 @@ constexpr OptionRow view_rows[] = {
     {"camera", "FILE|JSON", pictures | chart | basic | state | camera | view,
      "view or list of views: .json .pvcc text, or JSON itself (default: frames the mesh)"},
     {"view", "front|back|left|right|top|bottom|iso|+x|-x|+y|-y|+z|-z", pictures | basic | state | view,
-     "direction: front looks along +y, of a patient at the face; +x looks along +x (default: upright, from a "
-     "little from the right and above)"},
+     "direction: front looks along +y, of a patient at the face; +x looks along +x (default: upright, a little from "
+     "the right and above)"},
     {"up", "X,Y,Z", pictures | state | view, "world direction that points up (default: z; y in views along z)"},
     {"azimuth", "DEGREES", pictures | basic | state | view, "turns the eye round the up axis, to the right"},
     {"elevation", "DEGREES", pictures | basic | state | view, "turns the eye upwards, after --azimuth"},
@@ -131,7 +131,7 @@ constexpr OptionRow surface_rows[] = {
     {"shade", "", pictures | basic | flag | state | settings,
      "Blinn-Phong by the field's gradient, with a light at the camera, or --light"},
     {"no-shade", "", pictures | flag | volumes | state | look | settings,
-     "volumes: not even a scan of a patient, which else is shaded"},
+     "volumes: no shading, not even of a scan of a patient"},
     {"light", "[world:]X,Y,Z", pictures | state | settings,
      "--shade: towards the light; to the right, up and towards the eye, or along the world's axes (default 0,0,1)"},
 };
@@ -211,7 +211,7 @@ constexpr OptionRow accuracy_rows[] = {
     {"memory", "SIZE", pictures | chart | basic | data | machine,
      "budget of the frame buffers, or of a volume's bricks, like 512M (default 4G)"},
     {"without", "WORD,...", render,
-     "leave out what saves work, to see what it is worth: culling, skipping, termination, lattice, sharing, merging"},
+     "switch off optimizations, to measure what they save: culling, skipping, termination, lattice, sharing, merging"},
     {"repeat", "K", render, "render each frame K times and print frame_ms median and min"},
     {"verify", "K", render | basic, "check K random pixels a frame against the exact reference"},
     {"preset", "juliachs-2007", render,
@@ -258,7 +258,7 @@ constexpr OptionRow rank_rows[] = {
     {"frames-in-flight", "F", render, "under mpirun: frames on their way (default: 2)"},
     {"seed", "NUMBER", render | meshes, "under mpirun: of the tile map and of --partition random (default: 1)"},
     {"stall-timeout", "SECONDS", pictures | machine,
-     "under mpirun: a rank that has been silent for so long is reported as stopped; 0: never (default: 120)"},
+     "under mpirun: a rank that has been silent for this long is reported as stopped; 0: never (default: 120)"},
     {"on-stall", "wait|abort", pictures | machine, "under mpirun: wait for such a rank (default), or end the run"},
 };
 

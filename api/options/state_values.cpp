@@ -61,8 +61,9 @@ Settings State::settings(const Dataset& data) const {
   const auto& files = StateAccess::of(data).files;
   if (!options.block_surfaces.empty() || data.axis_scale() != glm::dvec3(1)) {
     if (files.empty() && !options.block_surfaces.empty())
-      throw bad_input(fmt::format("`surface`: '{}' is a block, which data in memory have not; give a file of triangles",
-                                  options.block_surfaces.front().word));
+      throw bad_input(
+          fmt::format("`surface`: '{}' is a block, and data in memory have no blocks; give a file of triangles",
+                      options.block_surfaces.front().word));
     settings.surfaces = with_block_surfaces(std::move(settings.surfaces), found_blocks(options.block_surfaces, data),
                                             data, files, options.read);
   }

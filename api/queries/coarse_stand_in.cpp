@@ -30,7 +30,7 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
   state->ranges = std::make_shared<const volume::CellRanges>(*state->samples, threads);
   const scene::ValueRange& range = state->ranges->range;
   if (range.empty())
-    throw scene::bad_input(whole.source + ": so few samples hold nothing of it; ask for more, or use the data");
+    throw scene::bad_input(whole.source + ": so few samples contain none of its data; ask for more, or use the data");
   const GridGeometry& geometry = state->samples->geometry();
   state->facts = {
       scene::bounds(geometry), {range.low, range.high}, scene::mean_thickness(geometry), 0, geometry.association};

@@ -33,7 +33,7 @@ std::optional<ConvertPieces> convert_pieces(const OptionWords& words) {
   const auto kind = words.choice("partition", {PartitionKind::curve, PartitionKind::file, PartitionKind::random});
   const auto count = words.count("pieces", 1, 100000);
   if (count) return ConvertPieces{*count, {.kind = kind.value_or(PartitionKind::curve)}};
-  if (kind && *kind != PartitionKind::curve) throw bad_input("--partition: is of --pieces; give their number too");
+  if (kind && *kind != PartitionKind::curve) throw bad_input("--partition: needs --pieces; give their number too");
   return std::nullopt;
 }
 

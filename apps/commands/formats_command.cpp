@@ -42,8 +42,8 @@ void print_text(const std::vector<FileFormat>& all) {
                format.left_out.empty() ? "" : fmt::format("needs {}, which is not installed", format.left_out),
                format.left_out.empty() || format.remark.empty() ? "" : "; ", with_options(format.remark));
   fmt::print(
-      "\nWhat a file is, is seen from what it begins with, then from its name (of PLOT3D, TetGen's files, .tets, .raw "
-      "from the name alone).\nA .gz of a format that is one file is looked into.\n");
+      "\nThe beginning of a file decides its format, then its name (of PLOT3D, TetGen's files, .tets, .raw the name "
+      "alone).\nFormats of one file are also read from .gz.\n");
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ std::string help_page(const CommandRow* command, bool all) {
     std::string page = fmt::format("{}\nUsage: {}\n\nCommands:\n", program_description, usage_of(nullptr));
     for (const CommandRow& each : command_rows()) add_entry(page, std::string(each.name), each.description);
     page += "\nOptions:\n";
-    add_entry(page, "--version", "print the version, the commit and how it was built, and end");
+    add_entry(page, "--version", "print the version, the commit and the build options");
     return page + "\n`tessera help COMMAND` has more.\n";
   }
   const bool is_render = command->trait == Trait::render;
@@ -134,8 +134,8 @@ std::string help_page(const CommandRow* command, bool all) {
       add_entry(page, option_form(*row, all), all ? row->help : first_words(row->help, page_columns - left_column));
   }
   if (is_render)
-    page += all ? "\nThe guide, docs/GUIDE.md, goes by what you want to do.\n"
-                : "--help-all has all options, `tessera formats` the files that are read.\n";
+    page += all ? "\nThe guide, docs/GUIDE.md, is organized by task.\n"
+                : "--help-all lists all options, `tessera formats` the files that are read.\n";
   if (command->trait == Trait::generate) page += '\n' + generator_help() + '\n';
   return page;
 }

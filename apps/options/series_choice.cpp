@@ -181,8 +181,8 @@ std::string series_note(const SeriesChoice& choice, std::size_t steps, const std
   std::string list;
   for (std::size_t k = 0; k < choice.steps.size(); ++k)
     list += fmt::format("{}{}", k == 0 ? "" : k + 1 == choice.steps.size() ? " and " : ", ", choice.steps[k]);
-  return fmt::format("field {} {} by time steps {} of 0 to {}, where it is from {:.6g} to {:.6g}", field,
-                     choice.function ? "and its colors go" : "goes", list, steps - 1, choice.range[0], choice.range[1]);
+  return fmt::format("field {} {} chosen by time steps {} of 0 to {}, where it is from {:.6g} to {:.6g}", field,
+                     choice.function ? "and its colors are" : "is", list, steps - 1, choice.range[0], choice.range[1]);
 }
 
 }  // namespace tessera::apps

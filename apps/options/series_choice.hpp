@@ -42,7 +42,7 @@ std::vector<std::size_t> steps_to_look_at(std::size_t steps);
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open);
 
-/// "field p and its colours go by time steps 0, 2 and 4 of 5, where it is from 0 to 3".
+/// "field p and its colours are chosen by time steps 0, 2 and 4 of 5, where it is from 0 to 3".
 std::string series_note(const SeriesChoice& choice, std::size_t steps, const std::string& field);
 
 }  // namespace tessera::apps

@@ -15,7 +15,7 @@ std::optional<StallSettings> stall_settings(const OptionWords& words, bool quiet
   const std::string& timeout = words.word("stall-timeout");
   if (timeout == "0") {
     if (settings.ends_run)
-      throw bad_input("--on-stall abort: --stall-timeout 0 looks for no stall; leave one of the two out");
+      throw bad_input("--on-stall abort: --stall-timeout 0 never reports a stall; leave one of the two out");
     return std::nullopt;
   }
   if (const auto seconds = words.positive("stall-timeout")) {

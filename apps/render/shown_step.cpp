@@ -69,9 +69,8 @@ void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   step_ = frame.step;
   if (first_ && first_->shows_shape && !data_->shows_shape())
     throw bad_input(
-        fmt::format("{}: time step {} shows the field '{}', which no step varies in that the choice went "
-                    "by, and those before show the shape; choose it with --field, or steps with "
-                    "--time-step FIRST:LAST",
+        fmt::format("{}: time step {} shows the field '{}', which is constant in the steps that were examined first, "
+                    "and earlier steps show the shape; choose it with --field, or steps with --time-step FIRST:LAST",
                     file.string(), step_, data_->field_name()));
   if (const auto time = data_->time(); time && !frame.data.has_time)
     for (FilmFrame& each : frames_)
@@ -187,8 +186,8 @@ void ShownStep::warn_at_end(const EmptyPictures& empty) const {
     const auto [lowest, highest] = whole_range_;
     if (std::max(low - lowest, highest - high) > 0.1 * (high - low))
       output_.warn(
-          fmt::format("values of all time steps are from {:.6g} to {:.6g}, colours go by those of "
-                      "{:.6g} to {:.6g}; --range {:.6g},{:.6g} spans all",
+          fmt::format("values of all time steps are from {:.6g} to {:.6g}, but the colours span {:.6g} to {:.6g}; "
+                      "--range {:.6g},{:.6g} spans all",
                       lowest, highest, low, high, lowest, highest));
   }
   const std::string warning = empty.warning(

@@ -99,8 +99,8 @@ std::vector<std::int32_t> level_sizes(std::span<const AmrBlock* const> levels, c
 }
 
 scene::Error too_long(double cells, const std::string& source) {
-  return scene::bad_input(
-      fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels", source, cells, most_corners));
+  return scene::bad_input(fmt::format("{}: its finest level would be {} cells long, the limit is {}; leave out levels",
+                                      source, cells, most_corners));
 }
 
 /// Places the blocks on the lattice.

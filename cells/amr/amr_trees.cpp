@@ -37,9 +37,9 @@ std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& sourc
   for (int level = 1; level < levels && steps <= most_amr_corners; ++level) steps *= part.branching;
   for (std::size_t a = 0; a < 3; ++a)
     if (!(static_cast<double>(roots_along(part, a)) * steps <= most_amr_corners))
-      throw scene::bad_input(fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels",
-                                         piece_words(part, source), static_cast<double>(roots_along(part, a)) * steps,
-                                         most_amr_corners));
+      throw scene::bad_input(
+          fmt::format("{}: its finest level would be {} cells long, the limit is {}; leave out levels",
+                      piece_words(part, source), static_cast<double>(roots_along(part, a)) * steps, most_amr_corners));
   return static_cast<std::int32_t>(steps);
 }
 
@@ -49,10 +49,10 @@ void require_rising(std::span<const double> at, std::int32_t steps, std::size_t 
     const double size = std::max(std::abs(at[n]), std::abs(at[n + 1])), step = (at[n + 1] - at[n]) / steps;
     if (!std::isfinite(at[n]) || !std::isfinite(at[n + 1]) ||
         !(step > 4 * std::numeric_limits<double>::epsilon() * size))
-      throw scene::bad_input(fmt::format(
-          "{}: its coordinates along {} go from {} to {}, between which {} cells of the finest level are to "
-          "lie; give coordinates that rise, or fewer levels",
-          source, "xyz"[axis], at[n], at[n + 1], steps));
+      throw scene::bad_input(
+          fmt::format("{}: its coordinates along {} go from {} to {}, too close for {} cells of the finest level; give "
+                      "coordinates that rise, or fewer levels",
+                      source, "xyz"[axis], at[n], at[n + 1], steps));
   }
 }
 
@@ -121,7 +121,7 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
   for (const AmrBlock& part : trees) {
     if (part.levels < 1 || part.levels > 64 || part.branching < 2) throw unfit(part, source);
     if (part.branching != first.branching || part.extent != first.extent)
-      throw scene::bad_input(fmt::format("{}: it has not the grid of piece '{}'; write all pieces of one data set",
+      throw scene::bad_input(fmt::format("{}: its grid is not that of piece '{}'; write all pieces of one data set",
                                          piece_words(part, source), first.name));
     levels = std::max(levels, part.levels);
   }

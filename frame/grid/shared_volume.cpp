@@ -135,10 +135,10 @@ std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const io::In
 
 std::string note_on(const io::InputFile& file, const Place& place, std::size_t ranks, std::size_t machines) {
   return fmt::format(
-      "{} is read as a whole: its samples are kept {}, in a file of {} without a name in {}{}, which "
-      "goes with the run",
+      "{} is read as a whole: its samples are kept {}, in an unnamed file of {} in {}{}, which is removed when the run "
+      "ends",
       file.path.filename().string(),
-      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, as memory may not hold them",
+      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, since memory may not hold them",
       system::size_in_words(place.bytes), place.folder,
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }

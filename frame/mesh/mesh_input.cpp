@@ -13,8 +13,8 @@ namespace tessera::frame {
 
 io::InputFile identify_input(const std::filesystem::path& input) {
   if (io::is_time_series(input))
-    throw scene::bad_input(
-        fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", input.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: it is a time series, which only render and serve accept; give one of its meshes", input.string()));
   return io::identify(input);
 }
 

@@ -106,7 +106,8 @@ void check(const DistributedSettings& settings) {
   if (on_device && device.method == GlMethod::fragment &&
       (settings.render.integrator.kind == scene::IntegratorKind::preintegrated ||
        settings.render.integrator.kind == scene::IntegratorKind::partial))
-    throw scene::bad_input("`integrator`: `compositor` gl-fragment knows sampled:N, exact and auto; use one of these");
+    throw scene::bad_input(
+        "`integrator`: `compositor` gl-fragment supports sampled:N, exact and auto; use one of these");
 }
 
 }  // namespace

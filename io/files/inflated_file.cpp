@@ -39,7 +39,7 @@ InflatedFile::InflatedFile(const InputFile& file, const system::InflateLimit& li
   if (!descriptor_.is_open()) throw std::bad_alloc();
   const system::PositionalFile packed(file.path);
   content_.size = system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.name);
-  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it holds nothing; write it again", file.name));
+  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.name));
   // By process id, because the helper opens it too.
   content_.path = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
   content_.is_gzip = false;
@@ -69,7 +69,7 @@ std::uint64_t packed_size(const std::filesystem::path& inflated) {
 void require_real_name(const std::filesystem::path& file) {
   if (is_inflated(file))
     throw scene::bad_input(
-        fmt::format("{}: HDF5's library opens no file within a gzip file; unpack it with gunzip", file.string()));
+        fmt::format("{}: HDF5 files cannot be read from gzip; unpack it with gunzip", file.string()));
 }
 
 void require_beside_others(const std::filesystem::path& file) {

@@ -110,7 +110,7 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const cells::F
 
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   if (opened.contents.parts.size() != 1)
-    throw scene::bad_input(fmt::format("{}: it holds no one grid; give a volume", opened.source));
+    throw scene::bad_input(fmt::format("{}: it does not hold exactly one grid; give a volume", opened.source));
   const std::string& source = opened.source;
   const ForeignPart& part = opened.contents.parts.front();
   VolumeFile result;

@@ -88,7 +88,7 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options
   }
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(
-        fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", source));
+        fmt::format("{}: it is a regular grid (image data), not a mesh; give it alone or among volumes", source));
   if (lists_pieces(file)) {
     // Reads pieces one by one, so that the whole gives the same result as its parts, and errors name the piece.
     const PieceList list = piece_list(file, options.blocks, options.surfaces);
@@ -144,7 +144,7 @@ cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options
 
 cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options) {
   // Valid files make VTK's reader crash.
-  constexpr const char* remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
+  constexpr const char* remedy = "VTK's reader does not support all variants of it: export CGNS or EnSight";
   return read_foreign_mesh(file, {Reader::vtk, "fluent", remedy}, options);
 }
 

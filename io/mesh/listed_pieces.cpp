@@ -72,7 +72,7 @@ void add_block(ListedPiece listed, const cells::BlockChoice& choice, PieceList& 
   list.block_names.push_back(listed.block);
   if (listed.type == in_pieces) return add_pieces_of_whole(listed.file, listed.block, list);
   if (!is_any_of(listed.type, volumes) && !is_wanted)
-    throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', no mesh or grid; leave it out",
+    throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', not a mesh or grid; leave it out",
                                        listed.file.string(), listed.list, listed.type));
   list.pieces.push_back(std::move(listed));
 }
@@ -128,10 +128,10 @@ PieceList piece_list(const InputFile& input, const cells::BlockChoice& choice, b
     list.format = "VTK XML multi-block";
     add_blocks(file, choice, list);
     if (choice.empty() && list.block_names.empty() && !list.surface_names.empty())
-      throw scene::bad_input(fmt::format(
-          "{}: it lists surfaces alone ({}), no cells of volume; give a mesh, in which `surface` draws such "
-          "files, or one of the files itself, which is filled with cells if it is closed",
-          file.string(), list.surface_names.front() + (list.surface_names.size() > 1 ? ", ..." : "")));
+      throw scene::bad_input(
+          fmt::format("{}: it lists surfaces only ({}), without volume cells; give a mesh, in which `surface` draws "
+                      "these files, or one of the files itself, which is filled with cells if it is closed",
+                      file.string(), list.surface_names.front() + (list.surface_names.size() > 1 ? ", ..." : "")));
     return list;
   }
   list.format = "VTK XML parallel unstructured grid";

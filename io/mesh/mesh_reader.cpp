@@ -94,8 +94,9 @@ void require_mesh(const InputFile& file) {
     throw scene::bad_input(fmt::format("{}: its format ({}) is not read; {}", file.name, format->name, format->remark));
   if (format->holds == FileHolds::series)
     throw scene::bad_input(
-        fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", file.name));
-  throw scene::bad_input(fmt::format("{}: it is a regular grid, no mesh; give it alone or among volumes", file.name));
+        fmt::format("{}: it is a time series, which only render and serve accept; give one of its meshes", file.name));
+  throw scene::bad_input(
+      fmt::format("{}: it is a regular grid, not a mesh; give it alone or among volumes", file.name));
 }
 
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options) {

@@ -28,9 +28,9 @@ std::uint64_t count_numbers(std::string_view text, const std::string& source) {
     const std::string_view word = words.word();
     const std::size_t exponent = word.find_first_of("dD");
     if (word.find('*') != std::string_view::npos)
-      refuse(words, word, "is a repeated number, which VTK's reader does not know; write each");
+      refuse(words, word, "is a repeated number, which VTK's reader does not support; write each");
     if (exponent != std::string_view::npos && number_of<double>(word.substr(0, exponent)))
-      refuse(words, word, "has an exponent that VTK's reader does not know; write it with E");
+      refuse(words, word, "has an exponent that VTK's reader does not support; write it with E");
     refuse(words, word, "is not a number; PLOT3D in text is numbers alone");
   }
   return count;

@@ -84,7 +84,8 @@ class NumberStream {
   }
 
   [[noreturn]] void refuse(std::string_view word, const char* what) const {
-    words_.fail(fmt::format("{} is among the {}, and no number; export the file again", scene::quote(word), what));
+    words_.fail(
+        fmt::format("{} is among the {}, and is not a number; export the file again", scene::quote(word), what));
   }
 
   TextScanner words_;

@@ -163,7 +163,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   /// Returns `value` if it is a number within [least, most], and an integer if `whole`.
   [[nodiscard]] double checked(const char* name, double value, double least, double most, bool whole) const {
-    if (std::isnan(value)) fail(fmt::format("{} is missing or no number", name));
+    if (std::isnan(value)) fail(fmt::format("{} is missing or not a number", name));
     if (value >= least && value <= most && !(whole && value != std::floor(value))) return value;
     fail(fmt::format("{} is {}, it must be {} from {} to {}", name, value, whole ? "a whole number" : "a number", least,
                      most));

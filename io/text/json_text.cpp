@@ -84,7 +84,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
     constexpr std::size_t deepest = 64;
     if (open_.size() == deepest)
       throw scene::bad_input(
-          fmt::format("{}: nested more than {} levels deep; this is not a file of ours", source_, deepest));
+          fmt::format("{}: nested more than {} levels deep; this is not one of Tessera's files", source_, deepest));
     open_.push_back(&place(std::move(value)));  // its address is stable until it is closed
     return true;
   }

@@ -36,7 +36,7 @@ std::string read_text_file(const std::filesystem::path& file) {
     text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest_file)
       throw scene::bad_input(
-          fmt::format("{}: is larger than {} MiB, which no such text is; check that it is the right file",
+          fmt::format("{}: is larger than {} MiB, too large for a text of this kind; check that it is the right file",
                       file.string(), largest_file >> 20));
   }
   // System files without a size refuse to be read; for others reading is an I/O error.

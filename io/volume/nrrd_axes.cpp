@@ -38,7 +38,7 @@ std::vector<std::optional<glm::dvec4>> space_vectors_of(std::string_view text, c
     }
     const std::size_t close = text.find(')');
     if (text.front() != '(' || close == std::string_view::npos)
-      throw damaged(file, fmt::format("space directions hold {}, no vector", quote(text)));
+      throw damaged(file, fmt::format("space directions hold {}, not a vector", quote(text)));
     const std::string_view vector = text.substr(0, close + 1);
     if (std::ranges::count(vector, ',') == 1)
       throw scene::bad_input(

@@ -57,8 +57,7 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
                               [&](const auto& a, const auto& b) { return samples_of(a) < samples_of(b); });
   if (chosen->front().components != 1)
     throw scene::bad_input(
-        fmt::format("{}: its images are coloured, of {} numbers a sample, no values of a volume; "
-                    "give a series of one number a sample",
+        fmt::format("{}: its images are coloured, with {} numbers a sample; give a series with one number a sample",
                     source, chosen->front().components));
   if (chosen->front().is_mosaic)
     throw scene::bad_input(
@@ -98,8 +97,8 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   const auto most =
       std::max_element(stacks.begin(), stacks.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (stacks.size() > 1)
-    notes.push_back(fmt::format("its frames have {} directions or spacings; only the {} of one are read", stacks.size(),
-                                most->size()));
+    notes.push_back(fmt::format("its frames have {} directions or spacings, and only the {} of one are read",
+                                stacks.size(), most->size()));
   return std::move(*most);
 }
 

@@ -139,10 +139,10 @@ io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& f
 io::ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string(), extension = file.extension().string();
   if (extension != ".unv" && extension != ".UNV")  // the only capitalizations that Gmsh accepts
-    throw scene::bad_input(fmt::format(
-        "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
-        "in .unv",
-        source));
+    throw scene::bad_input(
+        fmt::format("{}: Gmsh's library recognizes these files by their names only; unpack it, if it is packed, and "
+                    "have its name end in .unv",
+                    source));
   require_read_unv(file);
   merge(source, source);
   return contents_of_model(holdings, source, request, "I-DEAS universal", {});

@@ -85,8 +85,8 @@ class Universal {
     for (const auto& [number, name] : cubic)
       if (type == number)
         throw scene::bad_input(
-            fmt::format("{}: element {} is a cubic {} (type {}), which Gmsh's library does not know; export elements "
-                        "of first or second order",
+            fmt::format("{}: element {} is a cubic {} (type {}), which Gmsh's library does not support; export "
+                        "elements of first or second order",
                         source_, element, name, type));
     if (std::ranges::count(beams, type) > 0) next();
     for (long k = 0; k < nodes && next(); k += 8) {

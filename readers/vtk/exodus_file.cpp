@@ -301,7 +301,7 @@ class Reading {
       const ExodusElement element = exodus_element(topology, info.num_nodes_per_entry);
       if (!element.type)
         throw scene::bad_input(
-            fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; write tetrahedra, wedges, "
+            fmt::format("{}: element block {} has the unsupported type '{}' of {} nodes; write tetrahedra, wedges, "
                         "pyramids or hexahedra",
                         source_, id, topology.substr(0, 20), info.num_nodes_per_entry));
       add_block(id, info, element);

@@ -119,7 +119,7 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
 vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
                                        GridKind kind, std::vector<std::string>& notes) {
   if (io::vtk_xml_type(io::read_beginning(piece, 4096)) != words_of(kind).piece)
-    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them again", piece.string(),
+    throw scene::bad_input(fmt::format("{}: it is a piece of {}, but not a {}; write them again", piece.string(),
                                        file.string(), words_of(kind).extension));
   std::string warning;
   vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(read_xml_file(piece, words_of(kind).piece, warning));

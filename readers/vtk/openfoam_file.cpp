@@ -107,8 +107,8 @@ void refuse_compact_text(const std::filesystem::path& faces, const std::string& 
   }
   if (is_text && is_compact)
     throw scene::bad_input(
-        fmt::format("{}: {} is a faceCompactList in text, which VTK's reader does not know; write the "
-                    "case again with foamFormatConvert",
+        fmt::format("{}: {} is a faceCompactList in text, which VTK's reader does not support; write the case again "
+                    "with foamFormatConvert",
                     source, faces.lexically_normal().string()));
 }
 

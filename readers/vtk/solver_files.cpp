@@ -88,7 +88,7 @@ class FluentErrors : public vtkCommand {
     const std::string_view text = words != nullptr ? static_cast<const char*>(words) : "";
     if (!first.empty() || text.find("Could not open data file") != std::string_view::npos) return;
     first = words_for_users(text);
-    if (first.empty()) first = "VTK's reader does not get over it";
+    if (first.empty()) first = "VTK's reader fails on it";
   }
 
   std::string first;

@@ -94,8 +94,8 @@ std::string words_for_users(std::string_view said) {
 
 scene::Error error_of_vtk(const std::string& source, const std::string& words, const std::string& remedy) {
   if (words.empty())
-    return scene::bad_input(fmt::format(
-        "{}: VTK's reader does not get over it and gives no reason; have it written in another format", source));
+    return scene::bad_input(
+        fmt::format("{}: VTK's reader fails on it and gives no reason; have it written in another format", source));
   // VTK's legacy reader reports a truncated file only as a warning.
   if (has(words, "ends before its data")) return scene::bad_input(fmt::format("{}: {}; {}", source, words, remedy));
   // Legacy files that contain only fields.

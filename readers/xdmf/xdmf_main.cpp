@@ -45,7 +45,7 @@ std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& w
   const std::vector<double> numbers = doubles_of(dimensions);
   if (numbers.size() != 3)
     throw scene::bad_input(
-        fmt::format("{}: it is a grid of {} dimensions, no volume; give one of three", where, numbers.size()));
+        fmt::format("{}: it is a grid of {} dimensions, not a volume; give one of three", where, numbers.size()));
   std::array<std::int64_t, 3> sizes{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double n = numbers[2 - axis];
@@ -128,7 +128,7 @@ class PartOf {
     const auto axes = grid.getCoordinates();
     if (axes.size() != 3)
       throw scene::bad_input(
-          fmt::format("{}: it is a grid of {} dimensions, no volume; give one of three", where_, axes.size()));
+          fmt::format("{}: it is a grid of {} dimensions, not a volume; give one of three", where_, axes.size()));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       part.coordinates.push_back(hold_xdmf(holdings_, *axes[axis], "", 1, is_shared(*axes[axis])));
       part.extent[2 * axis + 1] = static_cast<std::int64_t>(part.coordinates.back().tuples) - 1;

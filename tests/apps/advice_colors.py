@@ -171,7 +171,7 @@ ROWS = [
         "info s.series --time-step 1",
         {"s.series": SERIES},
     ),
-    row(R + "--warp v:1", "it has no vector at its points", R),
+    row(R + "--warp v:1", "it has no vectors at its points", R),
     row(R + "--warp v:x", "write NAME, NAME:FACTOR or off", R),
     row(R + "--warp :2", "write NAME, NAME:FACTOR or off", R),
     listed("s.pvd", PVD, "VTKFile", "Folder", "check that it is a .pvd"),

@@ -60,7 +60,7 @@ ROWS = [
     tecplot("1 2 3 4\n", "1 2 3\n", "the zone ends before its nodes of elements do; it is truncated, export it again"),
     tecplot("1 2 3 4\n", "1 2 3 5\n", "nodes count from 1, export the file again"),
     tecplot("1 2 3 4\n", "1 2 3.5 4\n", "3.5 is among the nodes of elements; export the file again"),
-    tecplot("0 1 0 3", "0 one 0 3", "'one' is among the values, and no number; export the file again"),
+    tecplot("0 1 0 3", "0 one 0 3", "'one' is among the values, and is not a number; export the file again"),
     tecplot("N=4", "N=4000000000", "more than the file can hold; it is truncated, export it again"),
     tecplot("N=4", "N=x", "N is 'x', not a whole number; export the file again"),
     tecplot("N=4", "N 4", "is not a key of a zone with a value; export the file again"),

@@ -78,7 +78,7 @@ EXCEPTIONS = {
         5,
         TIME,
     ),
-    r"^readers/vtk/vtk_words\.cpp:\d+: \{\}: VTK's reader does not get over it and": (1, RARE),
+    r"^readers/vtk/vtk_words\.cpp:\d+: \{\}: VTK's reader fails on it and": (1, RARE),
     r"points in one block; split it$|^system/gzip\.cpp:\d+: it holds more than": (2, HUGE),
 }
 

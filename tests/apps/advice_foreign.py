@@ -116,7 +116,7 @@ ROWS = [
         unstructured(cells="0 1 2 3 0 1 2 3", offsets="6 4", types="10 10"),
         "the file is damaged, export it again",
     ),
-    mesh(unstructured(cells="0 1 2 3 0 1 2 3", offsets="3 8", types="10 10"), "it has to have 4; correct the cell types"),
+    mesh(unstructured(cells="0 1 2 3 0 1 2 3", offsets="3 8", types="10 10"), "it must have 4; correct the cell types"),
     mesh(unstructured(types="64"), "split such cells into tetrahedra first"),
     mesh(
         unstructured(types="42"),
@@ -189,7 +189,7 @@ ROWS = [
     ),
     row(
         "info a.vtm",
-        "no mesh or grid; leave it out",
+        "not a mesh or grid; leave it out",
         None,
         {"a.vtm": VTM, **TWO, "q.vtu": VTM},
         {"a.vtm": VTM.replace('file="q.vtu"', "")},
@@ -199,7 +199,7 @@ ROWS = [
     *(
         row(
             "info a.pvtu --field f",
-            f"{words}' of {size} as other pieces have; write all pieces with the same fields",
+            f"{words}' of {size} that other pieces have; write all pieces with the same fields",
             None,
             {
                 "a.pvtu": PVTU.replace('<Piece Source="p.vtu"/>', '<Piece Source="p.vtu"/><Piece Source="q.vtu"/>'),
@@ -209,15 +209,15 @@ ROWS = [
             {"q.vtu": unstructured(fields=field)},
         )
         for words, size, field in (
-            ("it has no point field 'f", "one component", FIELD.format("0 1 2 3")),
+            ("it lacks the point field 'f", "one component", FIELD.format("0 1 2 3")),
             (
-                "it has no point field 'f",
+                "it lacks the point field 'f",
                 "2 components",
                 FIELD.replace('"f"', '"f" NumberOfComponents="2"').format("0 1 2 3 4 5 6 7"),
             ),
-            ("it has no cell field 'f", "one component", CELL_FIELD.format("7")),
+            ("it lacks the cell field 'f", "one component", CELL_FIELD.format("7")),
             (
-                "it has no cell field 'f",
+                "it lacks the cell field 'f",
                 "2 components",
                 CELL_FIELD.replace('"f"', '"f" NumberOfComponents="2"').format("7 8"),
             ),
@@ -233,7 +233,7 @@ ROWS = [
     ),
     row("info a.vti", "export it again", None, {"a.vti": image_data(values="0 1 2")}, {"a.vti": IMAGE}),
     row("info a.vtr", "write the file again", None, {"a.vtr": UNEVEN.replace("0 1 3", "0 1 0")}, {"a.vtr": UNEVEN}),
-    pieces("ImageData", "vti", "and no .vti; write them again", IMAGE, RECTILINEAR, second(IMAGE)),
+    pieces("ImageData", "vti", "but not a .vti; write them again", IMAGE, RECTILINEAR, second(IMAGE)),
     pieces(
         "ImageData",
         "vti",
@@ -296,7 +296,7 @@ ROWS = [
     amr("write the levels between", b1=block(spacing="0.01 0.01 0.01")),
     amr("that of its level 1; write it again", b1=block(spacing="1 1 0.95")),
     amr("which has to be a whole number; write it again", b1=block(origin="0.2 0 0", spacing="0.5 0.5 0.5")),
-    amr("of the finest cells long", b1=block(origin="1000000000 0 0", spacing="0.5 0.5 0.5")),
+    amr("cells long, the limit is", b1=block(origin="1000000000 0 0", spacing="0.5 0.5 0.5")),
     row(
         "info a.vth",
         "check what it is",
@@ -360,7 +360,7 @@ ROWS = [
         for advice, other in (
             ("write each tree once, or mark ghosts by vtkGhostType", TREES),
             (
-                "it has not the grid of piece 'p.htg'; write all pieces of one data set",
+                "its grid is not that of piece 'p.htg'; write all pieces of one data set",
                 hyper_trees(("0 1 2", "0 1", "0 1")),
             ),
             ("are not those of piece 'p.htg'; write all pieces of one data set", hyper_trees(("0 2", "0 1", "0 1"))),

@@ -171,7 +171,7 @@ ROWS = [
     wrong_xdmf(xdmf(xdmf_mesh(geometry="XY", points=item("0 0 1 0 0 1 1 1", "4 2"))), "not as x y z; write them so"),
     wrong_xdmf(
         xdmf(xdmf_grid("2 4", "0 0", kind="2DCoRectMesh", geometry="ORIGIN_DXDY", spacing="1 1")),
-        "no volume; give one of three",
+        "not a volume; give one of three",
         GRID,
     ),
     wrong_xdmf(xdmf(xdmf_grid("2 2 0")), "points along an axis; write it again", GRID),
@@ -205,7 +205,7 @@ ROWS = [
     wrong_exodus(EXODUS[:-8], "write it again"),
     wrong_exodus(HDF5, "it is truncated or damaged, write it again"),
     wrong_exodus(exodus(2), "give a mesh in space"),
-    wrong_exodus(exodus(kind="BLOB4"), "which is not known; write tetrahedra, wedges"),
+    wrong_exodus(exodus(kind="BLOB4"), "nodes; write tetrahedra, wedges"),
     wrong_exodus(exodus(corners=(1, 2, 3, 9)), "write elements and nodes from one mesh"),
     wrong_exodus(exodus(set_element=9), "write sets and elements from one mesh", "info a.ex2 --block 'element set 7'"),
     row(
@@ -319,7 +319,7 @@ ROWS = [
     ),
     # DICOM
     ct(
-        "of 3 numbers a sample, no values of a volume; give a series of one number a sample",
+        "with 3 numbers a sample; give a series with one number a sample",
         **{str(k): dicom(k, samples=3, bits=8, pixels=bytes(12)) for k in (1, 2, 3)},
     ),
     row("info ct", "give a directory of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),

@@ -183,7 +183,7 @@ ROWS = [
     row("info s.ply", "or give a mesh of tetrahedra", "info m.tets", {"s.ply": PLY, "m.tets": TETS}, alone=True),
     row(
         "info g.vtk",
-        "see whether it runs, and give it more memory",
+        "check that it runs, and give it more memory",
         "info g.vtk",
         {"g.vtk": LEGACY, "alone/libexec/tessera/tessera-read-vtk": ("program", BROKEN)},
         alone=True,

@@ -102,7 +102,7 @@ ROWS = [
     row("info a.msh", "has no volume to render; give one of 3", "info m.vtu", {"a.msh": FLUENT.format(2, 2, "")}),
     row("info a.cas", "does not state what they are; export CGNS or EnSight", "info m.vtu",
         {"a.cas": FLUENT.format(3, 3, "")}),
-    row("info a.vtu", "is the order of their nodes VTK's?", None,
+    row("info a.vtu", "write them in VTK's order", None,
         {"a.vtu": unstructured(points=CUBE, cells="0 1 2 3 4 5 6 7", offsets="8", types="12")},
         {"a.vtu": unstructured(points=CUBE, cells="0 1 3 2 4 5 7 6", offsets="8", types="12")}),
     # VTK's errors

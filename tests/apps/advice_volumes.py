@@ -201,7 +201,7 @@ ROWS = [
     ),
     row(
         "info a.vtu.gz",
-        "it holds nothing; write it again",
+        "it is empty; write it again",
         None,
         {"a.vtu.gz": gzip.compress(b"")},
         {"a.vtu.gz": gzip.compress(TETRAHEDRON.encode())},
@@ -209,7 +209,7 @@ ROWS = [
     cut("a.nrrd.gz", gzip.compress(NRRD * 3), 90, "its compressed bytes end or break"),
     row(
         "info a.vtu.gz",
-        "hold more than 76 MiB, as no such data do; unpack it with gunzip",
+        "hold more than 76 MiB, which is out of proportion; unpack it with gunzip",
         "info a.vtu",
         {"a.vtu.gz": gzip.compress(ROOMY.encode())},
         {"a.vtu": ROOMY},

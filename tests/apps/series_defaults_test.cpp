@@ -135,11 +135,12 @@ TEST_F(SeriesDefaults, LookAtFiveStepsAtMostAndWarnOfOthers) {
   write(steps);
   const Outcome run = tessera(film(pvd));
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("note: field p and its colors go by time steps 0, 3, 6, 9 and 12 of 0 to 12, where it is from "
-                         "0 to 1"),
+  EXPECT_NE(run.err.find(
+                "note: field p and its colors are chosen by time steps 0, 3, 6, 9 and 12 of 0 to 12, where it is from "
+                "0 to 1"),
             std::string::npos)
       << run.err;
-  EXPECT_NE(run.err.find("values of all time steps are from 0 to 4, colours go by those of 0 to 1; --range 0,4 spans "
+  EXPECT_NE(run.err.find("values of all time steps are from 0 to 4, but the colours span 0 to 1; --range 0,4 spans "
                          "all"),
             std::string::npos)
       << run.err;

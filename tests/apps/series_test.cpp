@@ -66,7 +66,7 @@ TEST_F(Series, EachFrameIsThePictureOfItsMesh) {
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_TRUE(contents(folder / fmt::format("f_{}.pfm", k)) == expected[k]) << inputs[0] << " frame " << k;
     EXPECT_EQ(run.error_lines(), 5u) << run.err;
-    EXPECT_NE(run.err.find("note: field f goes by time steps 0, 1 and 2 of 0 to 2"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("note: field f is chosen by time steps 0, 1 and 2 of 0 to 2"), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("; 3 time steps\n"), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("frame 3 of 3: m_0010.vtu, 162 tets projected, "), std::string::npos) << run.err;
   }
@@ -77,7 +77,8 @@ TEST_F(Series, TheViewIsTheFirstStepsForAll) {
   const auto run = tessera(arguments({pattern}, "f_%d.pfm", {"--report", folder / "report.json"}));
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find("; view of the first of 3 time steps, "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("note: field f and its colors go by time steps 0, 1 and 2 of 0 to 2"), std::string::npos);
+  EXPECT_NE(run.err.find("note: field f and its colors are chosen by time steps 0, 1 and 2 of 0 to 2"),
+            std::string::npos);
   const auto report = nlohmann::json::parse(contents(folder / "report.json"));
   ASSERT_EQ(report.at("frames").size(), 3u);
   for (const auto& frame : report.at("frames")) EXPECT_EQ(frame.at("view"), report.at("frames")[0].at("view"));
@@ -160,7 +161,7 @@ TEST_F(Series, FaultsAreOneLineBeforeAnythingIsRendered) {
   EXPECT_NE(unnumbered.err.find("3 frames need a numbered name"), std::string::npos) << unnumbered.err;
   const auto run = tessera({"convert", missing, folder / "o.vtu"});
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("it is a time series, which render and serve take"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("it is a time series, which only render and serve accept"), std::string::npos) << run.err;
   EXPECT_EQ(folder.names(), with_films);
 }
 

@@ -261,7 +261,7 @@ TEST(State, OpensDataInMemoryToo) {
   EXPECT_EQ(state.view(data).size, (ImageSize{8, 8}));
   const State block = State::from_json(R"({"surface":"walls"})");
   EXPECT_EQ(fault_of([&] { static_cast<void>(block.settings(data)); }),
-            "`surface`: 'walls' is a block, which data in memory have not; give a file of triangles");
+            "`surface`: 'walls' is a block, and data in memory have no blocks; give a file of triangles");
 }
 
 }  // namespace

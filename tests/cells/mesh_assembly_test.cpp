@@ -168,7 +168,7 @@ TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {
   block.types[2] = 42;
   EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a polyhedron"), std::string::npos);
   block.types[2] = 12;
-  EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a hexahedron with 4 nodes, it has to have 8"),
+  EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a hexahedron with 4 nodes, it must have 8"),
             std::string::npos);
 }
 

@@ -122,7 +122,7 @@ TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
   EXPECT_GT(kept.source->bytes_read(), 0u);
   ASSERT_EQ(kept.notes.size(), alone.notes.size() + 1);
   for (const std::string& part : {std::string("v.nii.gz is read as a whole: its samples are kept on disk"),
-                                  scratch_.path().string(), std::string("goes with the run")})
+                                  scratch_.path().string(), std::string("is removed when the run ends")})
     EXPECT_NE(kept.notes.back().find(part), std::string::npos) << kept.notes.back();
   EXPECT_TRUE(scratch_.names().empty());
   options.memory_bytes = 2 * 48;

@@ -185,7 +185,7 @@ TEST_F(DicomFrameFiles, InSeveralDirectionsOrSpacingsAreThoseOfOneAndOfOnePlaceA
   file.each.back() = test::dicom_position({0, 0, 0}) + test::dicom_orientation("0\\1\\0\\0\\0\\1");
   const VolumeFile most = open(file);
   EXPECT_EQ(all_samples(*most.source), wanted(3));
-  EXPECT_TRUE(has_note(most, "frames have 2 directions or spacings; only the 3 of one are read"));
+  EXPECT_TRUE(has_note(most, "frames have 2 directions or spacings, and only the 3 of one are read"));
   // One with another spacing, and all with a spacing that differs from the file's.
   file.each.back() = test::dicom_position({10, -20, 12.5}) + test::dicom_measures(1.5, 1, 9);
   EXPECT_EQ(all_samples(*open(file).source), wanted(3));

@@ -203,7 +203,7 @@ TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedForWhatTheyAre) {
                           "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
                           "name=\"skin\" file=\"a.vtp\"/></vtkMultiBlockDataSet></VTKFile>");
   write("a.vtp", "<VTKFile type=\"PolyData\"><PolyData/></VTKFile>");
-  EXPECT_NE(message_of([&] { read_mesh(list); }).find("it lists surfaces alone (skin)"), std::string::npos);
+  EXPECT_NE(message_of([&] { read_mesh(list); }).find("it lists surfaces only (skin)"), std::string::npos);
   TESSERA_VTK_OR_SKIP();
   for (const std::string first : {"(0 \"flat\")\n(2 2)\n", "(2 2)\n"}) {
     const auto flat = write("a.msh", first + "(10 (0 1 5 0 2))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");

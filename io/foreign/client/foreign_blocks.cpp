@@ -126,7 +126,7 @@ void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, cells::C
     case NumberType::int32:
       return copy_numbers<std::int32_t>(file, offsets, block.offsets, where);
     default:
-      throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
+      throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
   }
 }
 
@@ -134,7 +134,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
                             const std::string& where) {
   if (!part.connectivity) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
+    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
   if (!part.types && part.connectivity->components == 4) {
     copy_numbers<scene::Tet>(file, *part.connectivity, block.tets, where);
     return check_tets(block.tets, block.positions.size(), where);
@@ -150,7 +150,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
   check_cells(block, where);
   if (part.faces && part.face_locations) {
     if (part.faces->type != NumberType::uint32 || part.face_locations->type != NumberType::int64)
-      throw scene::bad_input(fmt::format("{}: its faces are lists of no known width; write it again", where));
+      throw scene::bad_input(fmt::format("{}: its faces have an unsupported integer size; write it again", where));
     copy_numbers<std::uint32_t>(file, *part.faces, block.faces, where);
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
@@ -243,7 +243,7 @@ void add_polygons(const ForeignFile& file, const ForeignPart& part, cells::CellB
   if (part.points) copy_points(file, *part.points, block, where);
   if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
+    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
   block.types.assign(part.offsets->tuples - 1, vtk_number(CellType::polygon));
   copy_offsets(file, *part.offsets, block, where);
   copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
@@ -270,18 +270,19 @@ cells::CellBlock block_of(const ForeignFile& file, const ForeignPart& part, Grid
     case ForeignPart::Kind::image:
       if (grids == GridsAre::volumes)
         throw scene::bad_input(
-            fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", where));
+            fmt::format("{}: it is a regular grid (image data), not a mesh; give it alone or among volumes", where));
       add_image_points(part, block);
       add_grid_cells(points_along(part), block, where);
       break;
     case ForeignPart::Kind::trees:
-      throw scene::bad_input(fmt::format("{}: it holds trees of cells; give it alone", where));
+      throw scene::bad_input(
+          fmt::format("{}: it is a hyper tree grid, which cannot be combined with other files; give it alone", where));
     case ForeignPart::Kind::surface:
       if (file.with_surfaces) {
         add_polygons(file, part, block, where);
         break;
       }
-      throw scene::bad_input(fmt::format("{}: it holds a surface, no cells of volume; give a mesh", where));
+      throw scene::bad_input(fmt::format("{}: it holds a surface without volume cells; give a mesh", where));
   }
   block.point_ghost = ghost_bits(file, part.point_fields, block.positions.size());
   block.cell_ghost = ghost_bits(file, part.cell_fields, block.cell_count());

@@ -75,10 +75,10 @@ bool is_limited() {
 HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& task) {
   using enum scene::ErrorCode;
   if (!has_begun)
-    return {system_failure,
-            fmt::format("{} cannot be begun: {} ends as soon as it is started; see whether it runs, and "
-                        "give it more memory",
-                        task.words, reader_program(task.reader).program)};
+    return {
+        system_failure,
+        fmt::format("{} cannot begin: {} exits as soon as it is started; check that it runs, and give it more memory",
+                    task.words, reader_program(task.reader).program)};
   if (!known || !WIFSIGNALED(status))
     return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
@@ -282,7 +282,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
     }
   } catch (const Json::exception&) {
     throw scene::bad_input(
-        fmt::format("{}: its reader gives no sensible answer; have it written again, or in another format", subject));
+        fmt::format("{}: its reader returned an invalid answer; have it written again, or in another format", subject));
   }
   if (code != 0)
     throw scene::Error(code == static_cast<int>(scene::ErrorCode::system_failure) ? scene::ErrorCode::system_failure

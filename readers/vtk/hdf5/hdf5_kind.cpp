@@ -99,7 +99,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
     case Kind::minc:
       return read_minc2(holdings, file, request);
     case Kind::med:
-      throw refuse("a MED mesh, which is known by its name alone", "have that end in .med");
+      throw refuse("a MED mesh, which is recognized by its name only", "have that end in .med");
     case Kind::netcdf:
     case Kind::vtk_image:
     case Kind::unknown:

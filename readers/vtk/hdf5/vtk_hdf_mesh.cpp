@@ -115,7 +115,7 @@ class HdfMesh {
     std::array<std::vector<double>, 3> counts;
     for (std::size_t k = 0; k < 3; ++k) counts[k] = numbers(names[k]);
     if (counts[0].size() != counts[1].size() || counts[0].size() != counts[2].size())
-      throw wrong("its parts have not all a number of points, cells and connectivity ids");
+      throw wrong("some of its parts have no number of points, cells or connectivity ids");
     const Stretch chosen = part_numbers(counts[0].size());
     if (chosen.end() > counts[0].size() || chosen.end() < chosen.first)
       throw wrong(fmt::format("its step {} has parts up to {}, there are {}", step_.value_or(0), chosen.end(),
@@ -163,7 +163,7 @@ class HdfMesh {
   io::ForeignPart read_part(const Part& from, std::vector<std::string>* notes) const {
     io::ForeignPart part;
     const Hdf5Array& points = need("Points", 2);
-    if (points.lengths[1] != 3) throw wrong("its points have not three coordinates");
+    if (points.lengths[1] != 3) throw wrong("its points do not have three coordinates");
     part.points = hold_numbers(holdings_, read(points, from.points), 3);
     part.types = hold_vector(holdings_, {.type = NumberType::uint8}, whole<std::uint8_t>("Types", from.cells));
     part.offsets = hold_vector(holdings_, {.type = NumberType::uint64}, whole<std::uint64_t>("Offsets", from.offsets));

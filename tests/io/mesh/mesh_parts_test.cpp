@@ -162,7 +162,7 @@ TEST_F(MeshParts, FaultsNameThePiece) {
   std::vector<cells::CellBlock> pieces = {piece_at(0), piece_at(1), piece_at(2)};
   pieces[1].fields.erase(pieces[1].fields.begin());
   auto file = write_pieces(pieces);
-  const std::string expected = (folder / "piece1.vtu").string() + ": it has no point field 'piece'";
+  const std::string expected = (folder / "piece1.vtu").string() + ": it lacks the point field 'piece'";
   EXPECT_EQ(message_of([&] { read_mesh(file); }).substr(0, expected.size()), expected);
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }), message_of([&] { read_mesh(file); }));
   EXPECT_EQ(message_of([&] { read_in_parts(file, 3); }), message_of([&] { read_mesh(file); }));

@@ -277,7 +277,7 @@ TEST_F(Tecplot, FaultsAreNamedWithTheirLine) {
   refuse(one + "VARIABLES=X,Y,Z,p\n" + one, {"line 8", "VARIABLES names others"});
   refuse(tet + points + "1 2 3\n", {"a.tec", "line 8", "nodes of elements", "truncated"});
   refuse(tet + points + "1 2 3 5\n", {"line 2", "uses node 5, the zone has 4"});
-  refuse(tet + points + "1 2 x 4\n", {"line 7", "'x'", "no number"});
+  refuse(tet + points + "1 2 x 4\n", {"line 7", "'x'", "not a number"});
   refuse(tet + "0 0 0\n1 0 zero\n", {"line 4", "'zero'"});
   refuse(head + "ZONETYPE=FEMIXED\n" + points, {"line 2", "'FEMIXED'", "not read"});
   refuse(head + "ZONETYPE=FEBRICK, VARSHARELIST=([1-4]=1)\n" + points, {"line 2", "zone 1, and 0 zones come before"});

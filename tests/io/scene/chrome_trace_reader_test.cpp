@@ -87,7 +87,7 @@ TEST(ChromeTraceReader, AnEventThatMakesNoSenseIsNamedByItsNumber) {
   };
   const std::vector<std::array<std::string, 3>> cases = {
       {R"("ts":3.5,)", "", "ts is missing"},
-      {R"("dur":4)", R"("dur":"4")", "dur is missing or no number"},
+      {R"("dur":4)", R"("dur":"4")", "dur is missing or not a number"},
       {R"("dur":4)", R"("dur":-4)", "dur is -4"},
       {R"("ts":3.5)", R"("ts":1e300)", "ts is 1e+300"},
       {R"("pid":1,)", "", "pid is missing"},
