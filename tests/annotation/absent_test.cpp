@@ -11,7 +11,7 @@
 namespace tessera {
 namespace {
 
-TEST(AnnotationAbsent, SaysThatTheBuildLacksCairo) {
+TEST(AnnotationAbsent, ReportsThatTheBuildLacksCairo) {
   Annotation annotation;
   annotation.color_bar.emplace();
   Image picture({8, 8});

@@ -14,7 +14,7 @@ TEST(CleanText, LeavesUtf8AsItIs) {
     EXPECT_EQ(clean_text(text), text);
 }
 
-TEST(CleanText, ShowsEachByteThatIsNoneAndBlanksControls) {
+TEST(CleanText, ShowsInvalidBytesAndBlanksControls) {
   const std::string mark = "\xEF\xBF\xBD";
   EXPECT_EQ(clean_text("a\xFF"
                        "b"),

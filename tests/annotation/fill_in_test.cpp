@@ -13,7 +13,7 @@ namespace {
 
 const std::array<AnnotationWord, 3> facts{{{"field", "p"}, {"time", "0.5"}, {"file", "{field}"}}};
 
-TEST(FillIn, PutsValuesInThePlaceOfWords) {
+TEST(FillIn, ReplacesWordsByValues) {
   EXPECT_EQ(fill_in("{field} at {time} s", facts), "p at 0.5 s");
   EXPECT_EQ(fill_in("{field}{field}", facts), "pp");
   EXPECT_EQ(fill_in("", facts), "");
@@ -26,7 +26,7 @@ TEST(FillIn, LeavesOtherBracesAlone) {
     EXPECT_EQ(fill_in(text, facts), text);
 }
 
-TEST(FillIn, NamesWhatThereIsForAWordThatIsUnknown) {
+TEST(FillIn, ListsTheKnownWordsForAnUnknownOne) {
   try {
     (void)fill_in("{tiem}", facts);
     FAIL();

@@ -116,7 +116,7 @@ TEST(AnnotatedPicture, EdgesBehindTheDataAreSeenThroughIt) {
   EXPECT_EQ(seen, 6);
 }
 
-TEST(AnnotatedPicture, TheScaleBarIsAsLongAsItsNumberSays) {
+TEST(AnnotatedPicture, TheScaleBarHasTheLengthOfItsLabel) {
   Annotation annotation;
   annotation.scale_bar = ScaleBar{};
   annotation.style.text_size = 13;  // lines of one pixel
@@ -304,7 +304,7 @@ std::string complaint(const Annotation& annotation, const TransferFunction& func
   return {};
 }
 
-TEST(AnnotatedPicture, WhatCannotBeDrawnIsNamed) {
+TEST(AnnotatedPicture, NamesWhatCannotBeDrawn) {
   EXPECT_EQ(complaint({}), "");
   EXPECT_EQ(complaint(everything()), "");
   Annotation logarithmic;
@@ -325,7 +325,7 @@ TEST(AnnotatedPicture, WhatCannotBeDrawnIsNamed) {
   EXPECT_NE(complaint(colored).find("`annotation_color`: component 2 is -1"), std::string::npos) << complaint(colored);
 }
 
-TEST(AnnotatedPicture, ThePictureMustBeTheViews) {
+TEST(AnnotatedPicture, RefusesAnImageOfAnotherSizeThanTheView) {
   Image picture({8, 8});
   EXPECT_THROW(annotate(picture, {}, {{}, {8, 9}}, {}, {}), Error);
   EXPECT_THROW(annotate(picture, {}, {orthographic({0, 0, 1}, {}, -1), {8, 8}}, {}, {}), Error);

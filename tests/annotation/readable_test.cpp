@@ -32,7 +32,7 @@ TEST(Readable, InkStandsOutFromItsBackgroundAndItsHalo) {
       }
 }
 
-TEST(Readable, AColourThatIsAskedForIsTakenAndGetsAHaloThatDiffers) {
+TEST(Readable, ARequestedColourIsUsedWithAContrastingHalo) {
   for (int grey = 0; grey <= 100; ++grey) {
     AnnotationStyle style;
     style.ink = glm::dvec3(grey / 100.0);
@@ -60,7 +60,7 @@ std::array<double, 2> extremes(const Image& picture, double page) {
   return {low, high};
 }
 
-TEST(Readable, TransparentPicturesAreReadOnAnyPageAndOverAnyData) {
+TEST(Readable, TransparentImagesAreReadableOnAnyPageAndData) {
   Annotation text;
   text.texts = {{"Tessera"}};
   text.style.text_size = 20;

@@ -20,7 +20,7 @@ std::vector<std::string> labels(const std::vector<Tick>& ticks) {
 }
 using Words = std::vector<std::string>;
 
-TEST(Ticks, AreWhatOneWouldWrite) {
+TEST(Ticks, AreRoundNumbers) {
   EXPECT_EQ(labels(linear_ticks(0, 1, 6)), (Words{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(labels(linear_ticks(0, 1, 5)), (Words{"0.0", "0.5", "1.0"}));
   EXPECT_EQ(labels(linear_ticks(-3.2, 7.1, 6)), (Words{"-2", "0", "2", "4", "6"}));

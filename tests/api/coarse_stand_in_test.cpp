@@ -131,7 +131,7 @@ TEST(CoarseStandIn, IsTheSameForAnyNumberOfThreadsAndRanks) {
                            *coarse_stand_in(grid, {.samples = settings.samples, .threads = 4})));
 }
 
-TEST(CoarseStandIn, StopsOnAllRanksWhenOneIsTold) {
+TEST(CoarseStandIn, StopsOnAllRanksWhenOneIsStopped) {
   const scene::TetMesh mesh = with_field(datasets::cube(9), waves);
   std::stop_source stopped;
   stopped.request_stop();

@@ -40,7 +40,7 @@ TEST(Histogram, SharesAreThoseOfTheVolume) {
   }
 }
 
-TEST(Histogram, CountsWhatLiesInTheRangeAlone) {
+TEST(Histogram, CountsOnlyValuesInTheRange) {
   const Histogram found = histogram(mesh_of_x(), {.bins = 4, .range = {{0.0, 0.5}}});
   EXPECT_NEAR(sum(found.shares), 1, 1e-12);
   EXPECT_NEAR(found.outside, 0.75, 0.01);
@@ -70,7 +70,7 @@ TEST(Histogram, LeavesBlanksOut) {
   EXPECT_NEAR(sum(found.shares), 1, 1e-12);
 }
 
-TEST(Histogram, OfAViewCountsWhatItShows) {
+TEST(Histogram, OfAViewCountsVisibleValues) {
   View view{{}, {200, 100}};
   view.camera.position = {-0.5, 0, 5};
   view.camera.focal_point = {-0.5, 0, 0};
@@ -96,7 +96,7 @@ TEST(Histogram, OfOneValueHasARangeRoundIt) {
   EXPECT_EQ(found.shares, (std::vector<double>{0, 1, 0}));
 }
 
-TEST(Histogram, RefusesWhatIsNoRange) {
+TEST(Histogram, RefusesInvalidRanges) {
   const Dataset data = grid_of_x();
   EXPECT_THROW((void)histogram(data, {.range = {{1.0, 1.0}}}), Error);
   EXPECT_THROW((void)histogram(data, {.range = {{0.0, HUGE_VAL}}}), Error);
@@ -106,7 +106,7 @@ TEST(Histogram, RefusesWhatIsNoRange) {
   EXPECT_THROW((void)quantiles(data, std::span(&beyond, 1)), Error);
 }
 
-TEST(Quantiles, AreValuesThatSoMuchLiesBelow) {
+TEST(Quantiles, AreValuesWithThatFractionBelow) {
   for (const Dataset& data : {mesh_of_x(), grid_of_x()}) {
     const std::vector<double> values = quantiles(data, std::vector{0.5, 0.0, 1.0, 0.005, 0.995});
     EXPECT_NEAR(values[0], 0, 0.02);
@@ -290,7 +290,7 @@ TEST(Probe, OfAPartIsThatOfTheWhole) {
   });
 }
 
-TEST(Probe, RanksWithoutCellsAreAskedToo) {
+TEST(Probe, IncludesRanksWithoutCells) {
   scene::TetMesh one = datasets::cube(1);
   const std::vector<std::uint32_t> two_tets{0, 1};
   for (const scene::TetMesh& mesh :
@@ -310,7 +310,7 @@ TEST(Probe, RanksWithoutCellsAreAskedToo) {
   }
 }
 
-TEST(Probe, BesideTheDataItFindsNothing) {
+TEST(Probe, FindsNothingNextToTheData) {
   for (const Dataset& data : {mesh_of_x(), grid_of_x()}) {
     const RayProbe found = probe(data, view_from({0, 0, 4}, false), soft, {0, 0});
     EXPECT_EQ(found.pixel.a, 0);
@@ -320,7 +320,7 @@ TEST(Probe, BesideTheDataItFindsNothing) {
   }
 }
 
-TEST(Probe, RefusesWhatIsNoPixel) {
+TEST(Probe, RefusesInvalidPixels) {
   const Dataset data = grid_of_x();
   const View view = view_from({0, 0, 4}, false);
   for (const PixelIndex pixel : {PixelIndex{-1, 0}, PixelIndex{48, 0}, PixelIndex{0, 36}})

@@ -40,7 +40,7 @@ std::string note_with(const Dataset& data, const std::string& words) {
   return "";
 }
 
-TEST(FillValues, HugeOnesOfVolumesAreBlank) {
+TEST(FillValues, HugeFillValuesOfVolumesAreBlank) {
   const test::TemporaryFolder folder;
   for (const float fill : {-3.4028235e38F, 1e20F, 9.96921e36F}) {
     const Dataset data = Dataset::open(volume_with(folder, fill));
@@ -51,7 +51,7 @@ TEST(FillValues, HugeOnesOfVolumesAreBlank) {
   }
 }
 
-TEST(FillValues, UsualOnesAreNotedWithTheThresholdThatLeavesThemOut) {
+TEST(FillValues, UsualFillValuesAreNotedWithAThreshold) {
   const test::TemporaryFolder folder;
   const auto file = volume_with(folder, -9999);
   const Dataset data = Dataset::open(file);

@@ -35,7 +35,7 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
   }
 }
 
-TEST(MeshCheck, SaysHowFarItIs) {
+TEST(MeshCheck, ReportsProgress) {
   std::vector<double> heard;
   api::check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
   ASSERT_GE(heard.size(), 6u);  // six parts, reported at each start and every 2^15 of 69,120 tets

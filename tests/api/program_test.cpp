@@ -21,7 +21,7 @@ constexpr ImageSize size{61, 47};
 
 fs::path touched(const test::TemporaryFolder& folder, const char* name) { return folder.write(name, "x"); }
 
-TEST(FilmPlans, StepsTimesViewsAreNumberedAndFinishedOnesKnown) {
+TEST(FilmPlans, NumbersStepsTimesViewsAndRecognizesFinishedFrames) {
   const test::TemporaryFolder folder;
   FilmPlan plan;
   plan.inputs = {touched(folder, "a.tets"), touched(folder, "b.tets")};
@@ -68,7 +68,7 @@ TEST(FilmPlans, LaterStepsHaveTheFieldOfTheFirst) {
   EXPECT_EQ(read_of_later_steps({}, Dataset::of(arrays)).field, "cell:scalar");
 }
 
-TEST(FilmPlans, NamesThatCannotBeAreRefusedBeforeRendering) {
+TEST(FilmPlans, RefusesInvalidNamesBeforeRendering) {
   const test::TemporaryFolder folder;
   FilmPlan plan;
   plan.inputs = {touched(folder, "a.tets")};

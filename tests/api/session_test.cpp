@@ -231,7 +231,7 @@ TEST_P(AnyKind, StopsAtAnyTimeLeaveTheSessionUsable) {
   EXPECT_TRUE(same_bits(session.render(view_of(data), function).image, whole.image));
 }
 
-TEST_P(AnyKind, WhatTheSinkThrowsComesOut) {
+TEST_P(AnyKind, ASinksExceptionReachesTheCaller) {
   const Dataset data = dataset(GetParam());
   Session session(data);
   const TransferFunction function = data.transfer_function().function;
@@ -344,7 +344,7 @@ TEST_P(AnyKind, RanksStoppedAtRandomTimesGoOn) {
   });
 }
 
-TEST_P(AnyKind, OnRanksToTheSinksExceptionStopsAllAndComesOut) {
+TEST_P(AnyKind, OnRanksASinksExceptionStopsAllAndReachesTheCaller) {
   const Dataset data = dataset(GetParam());
   const TransferFunction function = data.transfer_function().function;
   exchange::run_ranks(2, [&](exchange::Transport& transport) {
@@ -375,7 +375,7 @@ class FullPipe final : public Sink {
   void tile(const Tile& /*tile*/) override { throw Error(ErrorCode::system_failure, "client: it has gone"); }
 };
 
-TEST_P(AnyKind, ASinksOwnErrorOfATileIsNotTheRuns) {
+TEST_P(AnyKind, ASinksErrorOfATileDoesNotFailTheRun) {
   const Dataset data = dataset(GetParam());
   const TransferFunction function = data.transfer_function().function;
   for (const int ranks : {1, 3})
@@ -392,7 +392,7 @@ TEST_P(AnyKind, ASinksOwnErrorOfATileIsNotTheRuns) {
     });
 }
 
-TEST_P(AnyKind, ASinksOwnErrorIsNotTheRuns) {
+TEST_P(AnyKind, ASinksErrorDoesNotFailTheRun) {
   const Dataset data = dataset(GetParam());
   const TransferFunction function = data.transfer_function().function;
   const std::vector<View> views(4, view_of(data));

@@ -132,7 +132,7 @@ TEST(ValidSettings, FaultsNameTheSetting) {
   expect_refused(faults_of_grids, DataKind::grid);
 }
 
-TEST(ValidSettings, TrianglesThatAreNoneAreRefused) {
+TEST(ValidSettings, RefusesInvalidTriangles) {
   const auto broken = std::make_shared<TriangleMesh>();
   broken->points = {{0, 0, 0}, {1, 0, 0}};
   broken->triangles = {{0, 1, 2}};

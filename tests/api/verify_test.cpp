@@ -271,7 +271,7 @@ TEST(Verify, ACorruptedPictureFailsAndTheReasonIsNamed) {
   EXPECT_EQ(bad.random.over_bound, 0u);
 }
 
-TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
+TEST(Verify, ChecksTheSamePixelsOnAnyNumberOfRanksAndThreads) {
   const auto field = [](const glm::dvec3& p) { return std::exp(-4 * (p.x * p.x + p.y * p.y + p.z * p.z)); };
   const auto source = grid(24, field);
   const scene::TransferFunction function(

@@ -134,7 +134,7 @@ TEST(Annotations, TheReportListsWhatWasGiven) {
   EXPECT_FALSE(nlohmann::json::parse(contents(folder / "s.json")).at("method").contains("annotation"));
 }
 
-TEST(Annotations, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
+TEST(Annotations, ReportsErrorsInOneLineBeforeWriting) {
   const Folder folder;
   const std::string picture = folder / "a.png";
   struct Case {
@@ -169,7 +169,7 @@ TEST(Annotations, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
   EXPECT_NE(deep.err.find("deep image: it is not annotated"), std::string::npos) << deep.err;
 }
 
-TEST(Annotations, AMachineWithoutFontsIsToldOf) {
+TEST(Annotations, ReportsAMachineWithoutFonts) {
   const Folder folder;
   const std::string none = folder.file("fonts.conf", "<?xml version=\"1.0\"?><fontconfig></fontconfig>");
   ASSERT_EQ(setenv("FONTCONFIG_FILE", none.c_str(), 1), 0);

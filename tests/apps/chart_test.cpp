@@ -35,7 +35,7 @@ TEST(DeltaE, AgreesWithThePublishedPairs) {
   EXPECT_NEAR(analysis::lab_of_linear({0.18, 0.18, 0.18}).x, 49.496, 1e-3);
 }
 
-TEST(ChartMeasure, ErrorsAreOfThePixelsLookedAt) {
+TEST(ChartMeasure, ErrorsAreOfTheSampledPixels) {
   Image image({2, 2});
   image.rgba = {0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 9, 9, 9, 9, 0.25f, 0, 0, 0.25f};
   const std::vector<PixelIndex> pixels = {{0, 0}, {1, 0}, {1, 1}};
@@ -59,7 +59,7 @@ analysis::ChartPoint point(const char* name, std::vector<double> ms, double erro
   return p;
 }
 
-TEST(ChartMeasure, TheFrontIsWhatNothingElseBeats) {
+TEST(ChartMeasure, TheParetoFrontHasTheUndominatedMethods) {
   std::vector<analysis::ChartPoint> points = {point("fast", {9, 1, 1}, 1e-2), point("best", {5}, 1e-7),
                                               point("beaten", {6}, 1e-3),     point("middle", {4, 2}, 1e-3),
                                               point("twin", {3}, 1e-3),       analysis::ChartPoint()};
@@ -153,7 +153,7 @@ TEST(Chart, ABudgetForNothingStillMeasuresTheDefaultAndNamesTheRest) {
   EXPECT_NE(run.out.find("fastest within 0.0001: planes auto 0.0001"), std::string::npos) << run.out;
 }
 
-TEST(Chart, WhatCannotBeIsRefusedBeforeTheWork) {
+TEST(Chart, RefusesImpossibleRequestsBeforeTheWork) {
   const Folder folder;
   EXPECT_EQ(tessera({"chart", folder.cube(), "--figure", folder / "c.pdf", "--quiet"}).status, 2);
   EXPECT_EQ(tessera({"chart", folder.cube(), "--budget-seconds", "0", "--quiet"}).status, 2);

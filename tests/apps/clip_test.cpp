@@ -26,7 +26,7 @@ class ClipCommand : public ::testing::Test {
   std::string mesh = folder.cube();  // [-1, 1]^3
 };
 
-TEST_F(ClipCommand, IsCountedAndVerifiedByTheWhole) {
+TEST_F(ClipCommand, CountsAndVerifiesAgainstTheWholeMesh) {
   const Outcome outcome = render({"--clip", "-0.3,0,0,1,0.2,0", "--clip", "box:-2,-2,-2,2,0.5,0.4", "--integrator",
                                   "exact", "--verify", "1200", "--report", folder / "r.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
@@ -74,7 +74,7 @@ TEST_F(ClipCommand, ThresholdOfAVolumeLeavesOutVoxelsWithASampleOutOfIt) {
   EXPECT_NE(none.err.find("no sample's value is in --threshold"), std::string::npos) << none.err;
 }
 
-TEST_F(ClipCommand, SaysWhatIsWrongInOneLine) {
+TEST_F(ClipCommand, ReportsErrorsInOneLine) {
   const std::pair<Names, std::string> faults[] = {
       {{"--clip", "1,2,3"}, "--clip: '1,2,3' is not PX,PY,PZ,NX,NY,NZ"},
       {{"--clip", "0,0,0,0,0,0"}, "has the normal 0,0,0"},

@@ -24,7 +24,7 @@ using Words = std::vector<std::string>;
 
 bool holds(const Words& words, const std::string& word) { return std::ranges::find(words, word) != words.end(); }
 
-TEST(Completion, KnowsCommandsOptionsWordsAndNames) {
+TEST(Completion, CompletesCommandsOptionsWordsAndNames) {
   const Folder folder;
   const std::string mesh = folder.cube();
   EXPECT_EQ(completions({"re"}), Words{"render"});

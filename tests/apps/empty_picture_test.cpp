@@ -97,7 +97,7 @@ TEST_F(EmptyPicture, OfABarBetweenPixelsNamesSizeZoomAndScale) {
   expect_remedies(mesh, words, outcome.err, {"--size", "--zoom", "--scale"});
 }
 
-TEST_F(EmptyPicture, OfSpecksAWorldApartNamesACameraBeforeOne) {
+TEST_F(EmptyPicture, OfDistantSpecksNamesACameraInFrontOfOne) {
   const std::string mesh = folder.file(
       "specks.vtu",
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
@@ -126,7 +126,7 @@ TEST_F(EmptyPicture, OfAThinGridNamesRemediesToo) {
   expect_remedies(grid, words, outcome.err, {"--size", "--zoom", "--scale"});
 }
 
-TEST_F(EmptyPicture, OnRanksIsWarnedOfOnceAsByOneProcess) {
+TEST_F(EmptyPicture, IsReportedOnceByAllRanks) {
   if (!has_mpirun()) GTEST_SKIP() << "no mpirun";
   const std::string mesh = folder.file("bar.vtu", bar(0.002));
   const Names words = {"--view", "front"};
@@ -170,7 +170,7 @@ TEST_F(EmptyPicture, OfAFunctionThatMissesTheDataNamesWhatMeetsThem) {
   EXPECT_NE(clear.err.find("--opacity-points are all 0"), std::string::npos) << clear.err;
 }
 
-TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesSaysSo) {
+TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesIsReported) {
   // One cell, with values from 0 to 1. The view shows only values that the function hides.
   const std::string volume = folder.file("v_2x2x2_uint8.raw", std::string("\0\1\0\1\0\1\0\1", 8));
   const std::string mesh = folder.file("thick.vtu", bar(1));
@@ -188,7 +188,7 @@ TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesSaysSo) {
   }
 }
 
-TEST_F(EmptyPicture, OfNextToNoOpacityNamesAScaleOfIt) {
+TEST_F(EmptyPicture, OfAlmostNoOpacityNamesAScale) {
   const std::string faint = folder.file("f.txt", "0 1 1 1 1e-6\n1 1 1 1 1e-6\n");
   const Names words = {"--transfer-function", faint};
   const Outcome outcome = render(cube, words);
@@ -196,7 +196,7 @@ TEST_F(EmptyPicture, OfNextToNoOpacityNamesAScaleOfIt) {
   expect_remedies(cube, words, outcome.err, {"--opacity-scale"});
 }
 
-TEST_F(EmptyPicture, IsNotWhatHasLightWithoutExtinction) {
+TEST_F(EmptyPicture, LightWithoutExtinctionIsNotEmpty) {
   const std::string light = folder.file("l.txt", "0 1 1 1 0\n1 1 1 1 0\n");
   const Outcome outcome = render(cube, {"--transfer-function", light, "--emission", "independent"});
   EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;

@@ -45,7 +45,7 @@ TEST(Environment, AResultForAClosedStandardOutputFails) {
   EXPECT_EQ(run.error_lines(), 1u) << run.err;
 }
 
-TEST(Environment, AFileThatMayNotGrowIsSaid) {
+TEST(Environment, ReportsAFileSizeLimit) {
   const Folder folder;
   const Outcome run = by_shell("ulimit -f 8;", {"render", folder.cube(), "-o", folder / "a.pfm", "--size", "200x200"});
   EXPECT_EQ(run.status, 3) << run.err;
@@ -54,7 +54,7 @@ TEST(Environment, AFileThatMayNotGrowIsSaid) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.pfm"));
 }
 
-TEST(Environment, ASmallStackIsSaid) {
+TEST(Environment, ReportsASmallStack) {
   const Folder folder;
   const Outcome run = by_shell("ulimit -s 256;", {"render", folder.cube(), "-o", folder / "a.png"});
   EXPECT_EQ(run.status, 3) << run.err;

@@ -27,7 +27,7 @@ void expect_fault(int status, Names arguments, const Names& words) {
   for (const auto& word : words) EXPECT_NE(run.err.find(word), std::string::npos) << word << " in " << run.err;
 }
 
-TEST(Faults, HelpAndVersionAreNone) {
+TEST(Faults, HelpAndVersionSucceed) {
   for (const Names& arguments : {Names{"--help"}, Names{"--version"}, Names{"render", "--help"}, Names{"info", "-h"},
                                  Names{"convert", "--help"}, Names{"generate", "--help"}}) {
     const auto run = tessera(arguments);
@@ -37,7 +37,7 @@ TEST(Faults, HelpAndVersionAreNone) {
   }
 }
 
-TEST(Faults, ArgumentsThatMakeNoSenseNameTheOption) {
+TEST(Faults, InvalidArgumentsNameTheOption) {
   const Folder folder;
   const auto mesh = folder.cube();
   const Names head = {"render", mesh, "--quiet", "-o", folder / "a.png"};
@@ -109,7 +109,7 @@ TEST(Faults, ArgumentsThatMakeNoSenseNameTheOption) {
   EXPECT_EQ(folder.names(), (Names{"cube.vtu"}));
 }
 
-TEST(Faults, MissingCommandInputAndOutputAreSaid) {
+TEST(Faults, ReportsMissingCommandInputAndOutput) {
   expect_fault(2, {}, {"tessera --help"});
   expect_fault(2, {"paint"}, {"'paint'", "render"});
   expect_fault(2, {"render"}, {"INPUT"});
@@ -117,7 +117,7 @@ TEST(Faults, MissingCommandInputAndOutputAreSaid) {
   expect_fault(2, {"render", "a.vtu", "-o", "a.png", "--quiet"}, {"a.vtu"});
 }
 
-TEST(Faults, AFieldThatIsNotThereListsThoseThatAre) {
+TEST(Faults, AMissingFieldListsTheExistingOnes) {
   const Folder folder;
   expect_fault(2, {"render", folder.cube(), "--quiet", "-o", folder / "a.png", "--field", "heat"}, {"heat", "field"});
 }
@@ -161,7 +161,7 @@ TEST(Faults, AFileNameWithALineBreakStillGivesOneLine) {
   expect_fault(2, {"render", "two\nlines.vtu", "--quiet", "-o", "a.png"}, {"two lines.vtu"});
 }
 
-TEST(Faults, AFolderThatIsClosedToUsIsSaidBeforeReading) {
+TEST(Faults, ReportsAnUnreadableDirectoryBeforeReading) {
   if (geteuid() == 0) GTEST_SKIP() << "root writes everywhere";
   const Folder folder;
   std::filesystem::permissions(folder / "", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);

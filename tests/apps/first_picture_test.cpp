@@ -32,7 +32,7 @@ TEST(FirstPicture, SeveralRanksChooseViewRangeAndFunctionOfOne) {
   EXPECT_EQ(a.at("frames").at(0).at("view"), b.at("frames").at(0).at("view"));
 }
 
-TEST(FirstPicture, AFunctionThatShowsNothingIsWarnedOfWithTheOptionThatMendsIt) {
+TEST(FirstPicture, WarnsOfAnInvisibleFunctionWithTheOptionThatFixesIt) {
   const Folder folder;
   const std::string far_off = folder.file("far.txt", "100 1 0 0 0\n200 0 1 0 5\n");
   const std::vector<std::string> command{"render", folder.cube(),         "-o",   folder / "a.png", "--size",
@@ -62,7 +62,7 @@ TEST(FirstPicture, AMeshWithoutFieldShowsItsShapeUnlessAFunctionIsNamed) {
   EXPECT_NE(one.err.find("field none (point) 1 to 1"), std::string::npos) << one.err;
 }
 
-TEST(FirstPicture, OptionsOfViewAndFunctionSayWhatTheyTake) {
+TEST(FirstPicture, OptionsOfViewAndFunctionListTheirValues) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const auto refused = [&](const std::vector<std::string>& more, const std::string& word) {

@@ -40,7 +40,7 @@ std::vector<std::string> render_arguments(const std::string& mesh, const std::st
   return all;
 }
 
-TEST_F(GlRender, OneProcessComputesWithinTheExactPromiseAndSaysWhere) {
+TEST_F(GlRender, OneProcessKeepsTheExactPromiseAndReportsTheDevice) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const auto run = tessera(
@@ -71,7 +71,7 @@ TEST_F(GlRender, BackendAloneMeansCompute) {
   EXPECT_NE(run.err.find("composited by gl-compute (OSMesa, "), std::string::npos) << run.err;
 }
 
-TEST_F(GlRender, ThePapersWayIsTheCpusSamplesWithAFloatFramebuffer) {
+TEST_F(GlRender, ThePapersMethodMatchesTheCpusSamplesWithAFloatFramebuffer) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const std::vector<std::string> sampled{"--integrator", "sampled:4", "--quiet"};
@@ -96,7 +96,7 @@ TEST_F(GlRender, AutomaticNeverTakesSoftware) {
   }
 }
 
-TEST_F(GlRender, ADeviceThatIsNotThereIsOneLine) {
+TEST_F(GlRender, ReportsAMissingDeviceInOneLine) {
   const Folder folder;
   const auto run =
       tessera(render_arguments(folder.cube(), folder / "x.pfm", {"--backend", "egl", "--egl-device", "1000"}));

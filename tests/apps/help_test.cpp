@@ -50,7 +50,7 @@ TEST(Help, AllHasEveryOption) {
         << row->names;
 }
 
-TEST(Help, ManualNamesTheOptionsThatThereAre) {
+TEST(Help, TheManualNamesExistingOptions) {
   std::string manual;
   for (const char* page : {"GUIDE.md", "REFERENCE.md", "FORMATS.md", "SERVER.md"})
     manual += contents(std::string(TESSERA_SOURCE_DIR "/docs/") + page);
@@ -77,7 +77,7 @@ TEST(Help, ManualHasTheKeysOfStates) {
     EXPECT_NE(page.find('`' + std::string(row->key()) + '`'), std::string::npos) << row->key();
 }
 
-TEST(Help, PageOfTheServerNamesTheOptionsThatThereAre) {
+TEST(Help, TheServersPageNamesExistingOptions) {
   const std::string script = contents(TESSERA_SOURCE_DIR "/server/web/wording.js");
   const std::size_t begin = script.find("controls = {");
   const std::string controls = script.substr(begin, script.find("};", begin) - begin);
@@ -88,7 +88,7 @@ TEST(Help, PageOfTheServerNamesTheOptionsThatThereAre) {
   EXPECT_GT(count, 30);
 }
 
-TEST(Help, OfACommandIsWhatTheCommandSays) {
+TEST(Help, OfACommandIsTheCommandsOwnHelp) {
   EXPECT_EQ(tessera({"help", "render"}).out, tessera({"render", "--help"}).out);
   EXPECT_EQ(tessera({"help"}).out, tessera({"--help"}).out);
 }

@@ -32,7 +32,7 @@ pid_t busy_child_of(const Running& running) {
   return test::await(look) ? found : 0;
 }
 
-TEST(HelperEnd, OfACallerThatIsKilledAReadingProgramEndsAtOnce) {
+TEST(HelperEnd, AReaderProgramEndsWhenItsCallerIsKilled) {
   if (!io::has_reader(io::Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   const Folder folder;
   // A plate with a thickness of a millionth of its width: TetGen fills it for minutes with more tets than fit into

@@ -97,7 +97,7 @@ void expect_refused(const Folder& folder, const Words& command) {
   EXPECT_EQ(all_bytes(folder), before) << text;
 }
 
-TEST(InputProtection, NoOutputReplacesWhatIsRead) {
+TEST(InputProtection, NoOutputReplacesAnInput) {
   const Folder folder, elsewhere;
   const std::vector<Case> cases = cases_in(folder);
   fs::create_directory_symlink(folder / "", elsewhere / "folder");
@@ -139,7 +139,7 @@ TEST(InputProtection, ConversionReplacesNoPartOfItsInput) {
 }
 
 // An earlier version wrote it before it had examined anything.
-TEST(InputProtection, NothingIsWrittenByARunThatIsRefused) {
+TEST(InputProtection, ARefusedRunWritesNothing) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const auto before = all_bytes(folder);
@@ -177,7 +177,7 @@ TEST(InputProtection, StepsThatAreNotDrawnAreNotReplaced) {
 }
 
 // Files that a reader only inspects in a directory do not become inputs.
-TEST(InputProtection, PicturesInAnInputFolderAreReplaced) {
+TEST(InputProtection, ImagesInAnInputDirectoryAreReplaced) {
   const Folder folder;
   fs::create_directories(folder / "case/constant/polyMesh");
   fs::create_directories(folder / "case/system");

@@ -247,7 +247,7 @@ TEST(Interruption, AtATerminalControlCTakesTheLineOfProgressAway) {
   EXPECT_EQ(folder.names(), before);
 }
 
-TEST(Interruption, AtATerminalControlCEndsAFillingToo) {
+TEST(Interruption, AtATerminalControlCEndsFillingByTetGen) {
   if (!io::has_reader(io::Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   if (const std::string reason = no_terminal(); !reason.empty()) GTEST_SKIP() << reason;
   const Folder folder;

@@ -71,7 +71,7 @@ TEST_F(LikeReport, GivesTheSameDataTheSamePicture) {
   }
 }
 
-TEST_F(LikeReport, OptionsBesideItWin) {
+TEST_F(LikeReport, OtherOptionsOverrideIt) {
   const Json like = report_of(folder_, {first_, "--size", "40x30", "--field", "p"});
   const std::string file = folder_.file("like.json", like.dump());
   const Json other = report_of(folder_, {second_, "--like", file, "--field", "q", "--transfer-function", "magma:ramp",
@@ -89,7 +89,7 @@ TEST_F(LikeReport, HasAllViewsOfAnOrbit) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(same.at("frames")[i].at("view"), like.at("frames")[i].at("view"));
 }
 
-TEST_F(LikeReport, WhatIsNoReportIsSaid) {
+TEST_F(LikeReport, RefusesFilesThatAreNotReports) {
   for (const char* text : {"{}", "[1]", "{\"mesh\": 1}", "no JSON", "{\"frames\": []}"}) {
     const std::string file = folder_.file("like.json", text);
     const Outcome run = tessera({"render", first_, "-o", folder_ / "a.png", "--like", file});

@@ -19,7 +19,7 @@
 namespace tessera::apps {
 namespace {
 
-TEST(Info, SaysWhatTheFileHoldsForPeopleAndForMachines) {
+TEST(Info, PrintsTheContentsAsTextAndAsJson) {
   const Folder folder;
   const auto mesh = folder.cube();
   const auto text = tessera({"info", mesh});
@@ -36,7 +36,7 @@ TEST(Info, SaysWhatTheFileHoldsForPeopleAndForMachines) {
   EXPECT_TRUE(json.at("renders").at("view").contains("parallel_scale"));
 }
 
-TEST(Info, CountsInfiniteNumbersAsSuch) {
+TEST(Info, CountsInfiniteNumbers) {
   const Folder folder;
   const auto mesh = folder / "a.vtu";
   const auto array = [](const std::string& type, const std::string& name, const std::string& numbers) {
@@ -266,7 +266,7 @@ TEST(Convert, PiecesThatCannotBeWrittenLeaveNothing) {
   EXPECT_EQ(folder.names(), names);
 }
 
-TEST(Convert, PiecesNeverReplaceWhatIsRead) {
+TEST(Convert, PiecesNeverReplaceTheInput) {
   const Folder folder;
   ASSERT_EQ(tessera({"convert", folder.cube(), folder / "a.pvtu", "--pieces", "3"}).status, 0);
   const auto before = contents(folder / "a_0001.vtu");
@@ -280,7 +280,7 @@ TEST(Convert, PiecesNeverReplaceWhatIsRead) {
   EXPECT_EQ(contents(folder / "a_0001.vtu"), before);
 }
 
-TEST(Convert, RefusesFormatsItDoesNotWrite) {
+TEST(Convert, RefusesFormatsThatItDoesNotWrite) {
   const Folder folder;
   const auto mesh = folder.cube();
   for (const char* name : {"a.stl", "a.pvtu", "a"}) {

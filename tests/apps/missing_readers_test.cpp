@@ -79,7 +79,7 @@ TEST_F(WithoutReaders, RanksRefuseAFileInOneLine) {
   EXPECT_EQ(lines, 1) << outcome.err;
 }
 
-TEST_F(WithoutReaders, AProgramThatAnotherUserMayHavePutThereIsNotTaken) {
+TEST_F(WithoutReaders, AProgramThatAnotherUserCanReplaceIsNotUsed) {
   const std::string file = folder.file("bracket.ex2", "CDF\1num_nodes"), marker = folder / "it_ran";
   const std::filesystem::path readers = folder / "alone/libexec/tessera", reader = readers / "tessera-read-vtk";
   std::filesystem::create_directories(readers);

@@ -132,7 +132,7 @@ TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
   EXPECT_EQ(contents(folder / "ranks.deep.exr"), contents(folder / "one.deep.exr"));
 }
 
-TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
+TEST_F(Mpirun, RunsMatchTheReferenceAndTheReportHasTheJobsShape) {
   const Folder folder;
   const Outcome outcome = mpirun(4, {"render",       folder.cube(),
                                      "-o",           folder / "a.exr",
@@ -219,7 +219,7 @@ TEST_F(Mpirun, RanksWithDifferentArgumentsEndInOneLine) {
   }
 }
 
-TEST_F(Mpirun, ResumeMakesOnlyWhatIsMissing) {
+TEST_F(Mpirun, ResumeRendersOnlyMissingFrames) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const std::vector<std::string> film{"render",  mesh,         "-o",      folder / "f_%02d.pfm", "--size",
@@ -238,7 +238,7 @@ TEST_F(Mpirun, ResumeMakesOnlyWhatIsMissing) {
   EXPECT_EQ(folder.names().size(), 6u);
 }
 
-TEST_F(Mpirun, OtherCommandsSpeakOnce) {
+TEST_F(Mpirun, OtherCommandsPrintOnce) {
   const Folder folder;
   const Outcome outcome = mpirun(3, {"info", folder.cube()});
   EXPECT_EQ(outcome.status, 0);

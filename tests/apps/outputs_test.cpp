@@ -58,7 +58,7 @@ TEST(Outputs, AFilmAloneIsAnnotated) {
     EXPECT_NE(film({option}), bare) << option;
 }
 
-TEST(Outputs, AFilmThatFailsLeavesNothingAndSaysWhy) {
+TEST(Outputs, AFailedFilmLeavesNothingAndReportsTheReason) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const StandIn ffmpeg(folder, "head -c 100 > /dev/null\necho 'no such encoder' >&2\nexit 1\n");
@@ -120,7 +120,7 @@ TEST(Outputs, WithoutFfmpegAFilmIsRefusedBeforeAnythingIsRead) {
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
 }
 
-TEST(Outputs, APictureOnStandardOutputIsTheFile) {
+TEST(Outputs, AnImageOnStandardOutputEqualsTheFile) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const Outcome piped =
@@ -130,7 +130,7 @@ TEST(Outputs, APictureOnStandardOutputIsTheFile) {
   EXPECT_NE(piped.err.find("frame_ms median"), std::string::npos);
 }
 
-TEST(Outputs, AReportOnStandardOutputIsAllThatIsThere) {
+TEST(Outputs, AReportOnStandardOutputIsTheOnlyOutput) {
   const Folder folder;
   const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "50x40", "--repeat", "2",
                                "--verify", "10", "--report", "-"});
@@ -138,7 +138,7 @@ TEST(Outputs, AReportOnStandardOutputIsAllThatIsThere) {
   EXPECT_EQ(nlohmann::json::parse(run.out).at("frames").size(), 1u);
 }
 
-TEST(Outputs, WhatCannotGoTogetherIsRefused) {
+TEST(Outputs, RefusesIncompatibleOutputs) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const std::vector<std::vector<std::string>> wrong = {{"-o", "-", "--report", "-"},
@@ -155,7 +155,7 @@ TEST(Outputs, WhatCannotGoTogetherIsRefused) {
   }
 }
 
-TEST(Outputs, AnEmptyStandardInputIsSaid) {
+TEST(Outputs, ReportsAnEmptyStandardInput) {
   const Folder folder;
   const Outcome run = tessera({"render", "-", "-o", folder / "a.png"});
   EXPECT_EQ(run.status, 2);

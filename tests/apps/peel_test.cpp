@@ -89,7 +89,7 @@ TEST(Peeling, LayersOfAFilmHaveItsNumbersAndNoBackground) {
   EXPECT_TRUE(has(folder, "f_001.layer4.exr"));
 }
 
-TEST(Peeling, AnEmptyLayerIsAPictureToo) {
+TEST(Peeling, WritesEmptyLayers) {
   const Folder folder;
   const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.exr", "--size", "20x20", "--opacity", "0.01",
                                "--peel", "0.9:2", "--quiet"});
@@ -99,7 +99,7 @@ TEST(Peeling, AnEmptyLayerIsAPictureToo) {
   EXPECT_TRUE(std::ranges::all_of(second.depth, [](float z) { return std::isinf(z); }));
 }
 
-TEST(Peeling, WhatItCannotDoIsOneLineOfOptionAndRemedy) {
+TEST(Peeling, ReportsUnsupportedRequestsInOneLineWithARemedy) {
   const Folder folder;
   const std::string mesh = folder.cube(), grid = volume(folder);
   const auto expect = [&](const std::string& input, const Words& words, const std::string& part) {

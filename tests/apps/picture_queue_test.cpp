@@ -66,7 +66,7 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   EXPECT_EQ(held, 0);
 }
 
-TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
+TEST(PictureQueue, AnErrorEndsTheWritingAndReachesTheRenderer) {
   std::atomic<int> written = 0;
   PictureQueue queue(1);
   queue.add([] { throw std::runtime_error("full"); });
@@ -80,7 +80,7 @@ TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
   EXPECT_EQ(written, 0);
 }
 
-TEST(PictureQueue, WhatWaitsIsWrittenAtAnEarlyEnd) {
+TEST(PictureQueue, AnEarlyEndWritesQueuedImages) {
   std::atomic<int> written = 0;
   {
     std::atomic<bool> at_end = false;

@@ -7,7 +7,7 @@
 namespace tessera::apps {
 namespace {
 
-TEST(StatusLine, OfReadingSaysHowFarItIsAsFarAsThatIsKnown) {
+TEST(StatusLine, OfReadingShowsKnownProgress) {
   const std::string stage = "reading a.vtu";
   EXPECT_EQ(reading_words(stage, std::nullopt, 1.2), "reading a.vtu, 1 s");
   EXPECT_EQ(reading_words(stage, ReadProgress{ReadProgress::Stage::reading, 0.454}, 3),
@@ -25,14 +25,14 @@ TEST(StatusLine, OfReadingSaysHowFarItIsAsFarAsThatIsKnown) {
             "reading a.ply: filling it with tets, 41 s");
 }
 
-TEST(StatusLine, OfOtherStagesSaysWhatIsLeftOnceThatMeansSomething) {
+TEST(StatusLine, OfOtherStagesShowsTheRemainingTimeOnceItIsMeaningful) {
   EXPECT_EQ(stage_words("rendering 8192x8192", std::nullopt, 2), "rendering 8192x8192, 2 s");
   EXPECT_EQ(stage_words("rendering 8192x8192", 0.05, 2), "rendering 8192x8192: 5 %, 2 s");
   EXPECT_EQ(stage_words("rendering 8192x8192", 0.25, 4), "rendering 8192x8192: 25 %, 4 s, 12 s left");
   EXPECT_EQ(stage_words("rendering 8192x8192", 1, 4), "rendering 8192x8192: 100 %, 4 s");
 }
 
-TEST(StatusLine, IsNotThereUnlessItIsToBeShown) {
+TEST(StatusLine, IsEmptyUnlessItIsToBeShown) {
   StatusLine hidden(false);
   EXPECT_FALSE(hidden.shown());
   EXPECT_EQ(hidden.listener(), nullptr);

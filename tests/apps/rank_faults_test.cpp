@@ -17,7 +17,7 @@ namespace {
 
 class RankFaults : public FilmRuns {};
 
-TEST_F(RankFaults, AnOutputFolderRemovedInMidRunIsTheSystemsFault) {
+TEST_F(RankFaults, AnOutputDirectoryRemovedDuringTheRunIsASystemFailure) {
   for (const std::string& input : inputs_)
     for (const int ranks : {0, 1, 2, 3}) {
       if (ranks > 0 && !has_mpirun()) continue;
@@ -39,12 +39,12 @@ TEST_F(RankFaults, AnOutputFolderRemovedInMidRunIsTheSystemsFault) {
     }
 }
 
-TEST_F(RankFaults, AFolderThatIsMissingFromTheStartIsTheUsers) {
+TEST_F(RankFaults, AnInitiallyMissingDirectoryIsTheUsersError) {
   std::filesystem::remove(pictures_);
   for (const std::string& input : inputs_) EXPECT_EQ(tessera(film(input)).status, 2);
 }
 
-TEST_F(RankFaults, AStepOfASeriesThatIsRemovedInMidRunIsTheSystemsFault) {
+TEST_F(RankFaults, AStepRemovedDuringTheRunIsASystemFailure) {
   for (const std::string& input : inputs_) {
     const std::string later = folder_ / ("later" + std::filesystem::path(input).extension().string());
     Outcome outcome;
@@ -66,7 +66,7 @@ TEST_F(RankFaults, AStepOfASeriesThatIsRemovedInMidRunIsTheSystemsFault) {
   }
 }
 
-TEST_F(RankFaults, ARankThatIsEndedEndsTheRunInOneLine) {
+TEST_F(RankFaults, AKilledRankEndsTheRunInOneLine) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const std::string& input : inputs_)
     for (const int ranks : {2, 4})
@@ -84,7 +84,7 @@ TEST_F(RankFaults, ARankThatIsEndedEndsTheRunInOneLine) {
       }
 }
 
-TEST_F(RankFaults, AllRanksEndedAtOnceGiveOneLineToo) {
+TEST_F(RankFaults, AllRanksKilledAtOnceGiveOneLine) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const std::string& input : inputs_) {
     Running running(command(3, film(input)));

@@ -53,7 +53,7 @@ TEST_F(RankLimits, MoreThreadsThanCoresAreNoWarning) {
     }
 }
 
-TEST_F(RankLimits, UnderAMemoryLimitThereIsOneLineThatSaysWhatToDo) {
+TEST_F(RankLimits, UnderAMemoryLimitOneLineGivesTheRemedy) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take all address space";
   const int least = least_limit();
   for (const std::string& input : inputs_)

@@ -70,7 +70,7 @@ TEST_F(RankStalls, AStoppedRankIsNamedAndWaitedFor) {
     }
 }
 
-TEST_F(RankStalls, AStoppedRankEndsTheRunWhereThatIsAsked) {
+TEST_F(RankStalls, AStoppedRankEndsTheRunOnRequest) {
   for (const auto& [input, ranks, stopped] : {std::tuple(inputs_[0], 2, 0), std::tuple(inputs_[1], 4, 3)}) {
     // Ten seconds: no running rank is silent for that long, however busy the machine is.
     Running running(command(ranks, film(input, {"--stall-timeout", "10", "--on-stall", "abort"})));
@@ -104,7 +104,7 @@ TEST_F(RankStalls, ARankThatComputesForLongIsNotStopped) {
   }
 }
 
-TEST_F(RankStalls, OptionsThatMakeNoSenseAreRefused) {
+TEST_F(RankStalls, RefusesInvalidOptions) {
   for (const Words& words : std::vector<Words>{{"--stall-timeout", "-1"},
                                                {"--stall-timeout", "soon"},
                                                {"--stall-timeout", "0.001"},

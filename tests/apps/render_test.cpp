@@ -29,7 +29,7 @@ TEST(Render, ADefaultPictureFillsTheMiddleAndLeavesTheCornersEmpty) {
   EXPECT_TRUE(std::isinf(image.depth[0]));
 }
 
-TEST(Render, SaysWhatItChoseInOneLineOnStderrAndNothingOnStdout) {
+TEST(Render, PrintsItsChoicesInOneLineOnStderrAndNothingOnStdout) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size=16x16"});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -47,7 +47,7 @@ TEST(Render, QuietLeavesNothingOnStderr) {
   EXPECT_EQ(run.err, "");
 }
 
-TEST(Render, TakesJsonItselfInPlaceOfAFilesName) {
+TEST(Render, AcceptsJsonInsteadOfAFilesName) {
   const Folder folder;
   const std::string near = R"({"position": [4, 3, 5], "focal_point": [0.5, 0.5, 0.5], "parallel_scale": 1})",
                     far = R"({"position": [4, 3, 5], "focal_point": [0.5, 0.5, 0.5], "view_angle": 20})",
@@ -169,7 +169,7 @@ TEST(Render, OrbitNumbersItsFramesAndTurnsTheView) {
   EXPECT_NE(contents(folder / "f_000.pfm"), contents(folder / "f_001.pfm"));
 }
 
-TEST(Render, ResumeMakesOnlyWhatIsMissing) {
+TEST(Render, ResumeRendersOnlyMissingFrames) {
   const Folder folder;
   const auto mesh = folder.cube();
   const Names arguments = {"render", mesh, "-o", folder / "f_%d.pfm", "--size", "24x24", "--orbit", "3", "--resume"};
@@ -185,7 +185,7 @@ TEST(Render, ResumeMakesOnlyWhatIsMissing) {
   EXPECT_NE(again.err.find("all 3 frames are there already"), std::string::npos) << again.err;
 }
 
-TEST(Render, AFileOfTransferFunctionStandsAsItIsUnlessRescaled) {
+TEST(Render, ATransferFunctionFileIsUsedAsItIsUnlessRescaled) {
   const Folder folder;
   const auto mesh = folder.cube();
   // Visible only far above the field's values.
@@ -219,7 +219,7 @@ TEST(Render, ACameraFileIsAPathAndSizeWinsOverItsOwn) {
   EXPECT_EQ(io::read_image(folder / "b0.pfm").size, (scene::ImageSize{9, 8}));
 }
 
-TEST(Render, ReportAndTimingAreJsonThatSaysWhatHappened) {
+TEST(Render, ReportAndTimingAreJsonOfTheRun) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "30x20", "--report",
                             folder / "report.json", "--timing", folder / "trace.json", "--verify", "50"});
@@ -262,7 +262,7 @@ TEST(Render, AReportedViewIsACameraFileThatGivesTheSamePicture) {
   EXPECT_TRUE(contents(folder / "a.exr") == contents(folder / "b.exr"));
 }
 
-TEST(Render, ADeepPictureStandsBesideTheFlatOne) {
+TEST(Render, WritesADeepImageInAdditionToAFlatOne) {
   const Folder folder;
   const auto mesh = folder.cube();
   ASSERT_EQ(tessera({"render", mesh, "-o", folder / "alone.exr", "--size", "30x20"}).status, 0);
@@ -279,7 +279,7 @@ TEST(Render, ADeepPictureStandsBesideTheFlatOne) {
   EXPECT_GT(report.at("frames").at(0).at("counters").at("deep_samples"), 100);
 }
 
-TEST(Render, ProgressIsALineThatGoesAway) {
+TEST(Render, ProgressIsATemporaryLine) {
   const Folder folder;
   const auto run =
       tessera({"render", folder.cube(), "-o", folder / "%d.pfm", "--size", "8x8", "--orbit", "2", "--progress"});

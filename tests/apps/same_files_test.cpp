@@ -55,13 +55,13 @@ class SameFiles : public ::testing::Test {
   const Folder folder_;
 };
 
-TEST_F(SameFiles, MeshesThatDifferAreTold) {
+TEST_F(SameFiles, ReportsDifferentMeshes) {
   make("0/m.tets", {"generate", "cube", folder_ / "0/m.tets", "n=4"});
   make("1/m.tets", {"generate", "cube", folder_ / "1/m.tets", "n=3"});
   expect_told({"render", "m.tets", "-o", "a.png", "--size", "16x16"}, "m.tets");
 }
 
-TEST_F(SameFiles, PiecesThatDifferAreTold) {
+TEST_F(SameFiles, ReportsDifferentPieces) {
   make("0/m.tets", {"generate", "cube", folder_ / "0/m.tets", "n=4"});
   make("1/m.tets", {"generate", "cube", folder_ / "1/m.tets", "n=3"});
   for (const char* rank : {"0", "1"})
@@ -72,7 +72,7 @@ TEST_F(SameFiles, PiecesThatDifferAreTold) {
 }
 
 // They once waited for each other's cells without end.
-TEST_F(SameFiles, VolumesThatDifferAreTold) {
+TEST_F(SameFiles, ReportsDifferentVolumes) {
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
   for (const auto& [rank, n] : {std::pair{"0", 8}, std::pair{"1", 6}}) {
     const auto half = static_cast<std::size_t>(n * n * n / 2);
@@ -85,7 +85,7 @@ TEST_F(SameFiles, VolumesThatDifferAreTold) {
   expect_told({"render", "v.nrrd", "-o", "a_%02d.png", "--orbit", "3", "--size", "16x16"}, "v.nrrd");
 }
 
-TEST_F(SameFiles, SamplesBesideAHeaderThatDifferAreTold) {
+TEST_F(SameFiles, ReportsDifferentSamplesOfAHeader) {
   for (const char* rank : {"0", "1"}) {
     write(std::string(rank) + "/d.mhd",
           "ObjectType = Image\nNDims = 3\nDimSize = 5 5 5\nElementType = MET_UCHAR\nElementDataFile = d.raw\n");
@@ -96,7 +96,7 @@ TEST_F(SameFiles, SamplesBesideAHeaderThatDifferAreTold) {
   expect_told({"render", "d.mhd", "-o", "a.png", "--size", "16x16"}, "d.raw");
 }
 
-TEST_F(SameFiles, CamerasAndFunctionsThatDifferAreTold) {
+TEST_F(SameFiles, ReportsDifferentCamerasAndFunctions) {
   make("0/m.tets", {"generate", "cube", folder_ / "0/m.tets", "n=4"});
   same_for_both("m.tets");
   write("0/cam.json", R"({"position":[0.5,0.5,9],"focal_point":[0.5,0.5,0.5],"parallel_scale":1})");

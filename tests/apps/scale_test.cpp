@@ -111,7 +111,7 @@ TEST(Scale, OfAnObliqueGridMovesItsCornersAsTheWorldsAxesDo) {
   }
 }
 
-TEST(Scale, RefusesWhatIsNoFactor) {
+TEST(Scale, RefusesInvalidFactors) {
   const Folder folder;
   for (const std::string word : {"1,2", "1,0,1", "1,-1,1", "x"}) {
     const Outcome outcome = tessera({"info", folder.cube(), "--scale", word});
@@ -120,7 +120,7 @@ TEST(Scale, RefusesWhatIsNoFactor) {
   }
 }
 
-TEST(Scale, IsChosenForDegreesBesideMetresAndNoted) {
+TEST(Scale, IsChosenForDegreesWithMetresAndNoted) {
   const Folder folder;
   const std::vector<double> few = {0, 1, 2}, deep = {0, 1000, 2500, 4000};
   const auto file = [&](const std::string& name, const std::vector<double>& levels) {

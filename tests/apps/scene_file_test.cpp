@@ -8,7 +8,7 @@
 namespace tessera::apps {
 namespace {
 
-TEST(SceneFile, ComesBackAsItWasSaved) {
+TEST(SceneFile, IsReadBackUnchanged) {
   const Folder folder;
   const std::string mesh = folder.cube(), scene = folder / "scene.toml", picture = folder / "a.png";
   const Outcome first = tessera({"render",
@@ -41,7 +41,7 @@ TEST(SceneFile, ComesBackAsItWasSaved) {
   EXPECT_EQ(contents(again), expected);
 }
 
-TEST(SceneFile, CommandLineWins) {
+TEST(SceneFile, TheCommandLineOverridesIt) {
   const Folder folder;
   const std::string scene =
       folder.file("s.toml", "input = \"" + (folder / "none.vtu") + "\"\nsize = \"8x8\"\nquiet = true\n" +
@@ -52,7 +52,7 @@ TEST(SceneFile, CommandLineWins) {
   EXPECT_EQ(tessera({"render", "--config", scene}).status, 2);  // none.vtu
 }
 
-TEST(SceneFile, NamesWhatIsNoOption) {
+TEST(SceneFile, NamesUnknownOptions) {
   const Folder folder;
   const std::string scene = folder.file("s.toml", "feild = \"f\"\n");
   const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--config", scene});

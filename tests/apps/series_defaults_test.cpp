@@ -119,7 +119,7 @@ TEST_F(SeriesDefaults, GoByTheStepsThatVary) {
   EXPECT_EQ(info_of(pvd, {"--time-step", "3"}).at("field").at("range").at(1), 1);
 }
 
-TEST_F(SeriesDefaults, SpanAllStepsLookedAt) {
+TEST_F(SeriesDefaults, SpanAllExaminedSteps) {
   const auto shifted = [](double by) { return [by](double x) { return by + x; }; };
   write({{{"p", shifted(0)}}, {{"p", shifted(1)}}, {{"p", shifted(5)}}});
   const Json report = report_of(pvd, {"--transfer-function", "viridis"});
@@ -128,7 +128,7 @@ TEST_F(SeriesDefaults, SpanAllStepsLookedAt) {
   EXPECT_EQ(report.at("frames").size(), 3u);
 }
 
-TEST_F(SeriesDefaults, LookAtFiveStepsAtMostAndWarnOfOthers) {
+TEST_F(SeriesDefaults, ExamineFiveStepsAtMostAndWarnOfOthers) {
   std::vector<std::vector<Field>> steps(13, {{"p", times(0)}});
   steps[9] = {{"p", times(1)}};  // of 0, 3, 6, 9 and 12
   steps[8] = {{"p", times(4)}};
@@ -158,7 +158,7 @@ TEST_F(SeriesDefaults, AreTheSameOnRanks) {
   EXPECT_EQ(together.at("mesh").at("notes"), alone.at("mesh").at("notes"));
 }
 
-TEST_F(SeriesDefaults, AnUnreadableStepIsSaidWhenItsTurnComes) {
+TEST_F(SeriesDefaults, ReportsAnUnreadableStepWhenItIsReached) {
   write({{{"p", times(1)}}, {{"p", times(1)}}, {{"p", times(1)}}});
   (void)folder.file("s_2.vtu", "<VTKFile type=\"UnstructuredGrid\">");
   const Outcome run = tessera(film(pvd));
@@ -261,7 +261,7 @@ TEST_F(SeriesDefaults, NeverShowAFieldInSomeStepsAndTheShapeInOthers) {
   EXPECT_EQ(report_of(pvd).at("mesh").at("field").at("name"), "shape (depth)");
 }
 
-TEST_F(SeriesDefaults, AFieldOfOneStepThatWasNotLookedAtIsNotShownInColorsOfTheShape) {
+TEST_F(SeriesDefaults, AFieldOfAnUnexaminedStepIsNotShownInTheShapesColors) {
   std::vector<std::vector<Field>> steps(13, {{"p", times(0)}});
   steps[8] = {{"p", times(4)}};  // steps 0, 3, 6, 9 and 12 are examined
   write(steps);

@@ -97,7 +97,7 @@ TEST_F(Series, StepsTimesViews) {
   }
 }
 
-TEST_F(Series, ResumeReadsNoMeshWhoseFramesAreThere) {
+TEST_F(Series, ResumeReadsNoMeshWhoseFramesExist) {
   const Names resume = arguments(meshes, "f_%d.pfm", {"--resume"});
   ASSERT_EQ(tessera(resume).status, 0);
   const std::string last = contents(folder / "f_2.pfm");

@@ -19,7 +19,7 @@ TEST(SettingWords, KnownNamesBecomeOptions) {
   EXPECT_EQ(with_options("waiting (`on_stall` abort ends the run)"), "waiting (--on-stall abort ends the run)");
 }
 
-TEST(SettingWords, AllElseStaysAsItIs) {
+TEST(SettingWords, OtherTextIsUnchanged) {
   for (const char* text :
        {"", "`", "``", "a ` b", "no setting", "`memory", "memory`", "`no_setting`", "`deep-accuracy`", "--memory",
         "has a broken header; it is `PF`, width and height", "each line is `value r g b extinction`",

@@ -164,7 +164,7 @@ TEST_F(SharedVolumes, AreAnnouncedOnce) {
   EXPECT_EQ(count_of(tessera(words).err, "read as a whole"), 0u);
 }
 
-TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithARemedyThatWorks) {
+TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithAWorkingRemedy) {
   // 27 MB, more than the limit, which still includes the memory shared by MPI's ranks.
   const std::string volume = zipped(300), missing = folder_ / "nowhere";
   const Words words = render(volume, folder_ / "a.pfm", {"--quiet"});
@@ -226,7 +226,7 @@ long peak_of(pid_t process) {
   return 0;
 }
 
-TEST_F(SharedVolumes, AreWholeInTheMemoryOfNoRank) {
+TEST_F(SharedVolumes, AreInNoRanksMemoryAsAWhole) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
   const std::string volume = zipped(400);
   constexpr long budget = 64l << 10;  // KiB; all samples take 62,500
@@ -290,7 +290,7 @@ TEST_F(SharedVolumes, InASmallPictureKeepTheBudget) {
   }
 }
 
-TEST_F(SharedVolumes, OfWhichLittleFitsTheBudgetKeepIt) {
+TEST_F(SharedVolumes, FarLargerThanTheBudgetKeepIt) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
   const std::string volume = folder_ / "v_512x512x512_uint8.raw";
   {

@@ -162,7 +162,7 @@ TEST(State, HasTheWordsOfEveryValue) {
     EXPECT_TRUE(stated.contains(row->key())) << row->key() << " is set by no value";
 }
 
-TEST(State, SetsOptionsAnew) {
+TEST(State, ReplacesOptions) {
   State state = State::from_json(R"({"view":"top","zoom":2,"log":true,"range":"1,2","size":"8x8","outline":true,
     "smooth":true,"shade":true})");
   state.set(ReadOptions{});
@@ -187,7 +187,7 @@ std::string fault_of(const Function& function) {
   return "";
 }
 
-TEST(State, NamesWhatIsWrong) {
+TEST(State, ReportsErrorsByName) {
   const auto json = [](const char* text) { return fault_of([&] { State::from_json(text, "s.json"); }); };
   EXPECT_EQ(json(R"({"feild":"p"})"), "s.json: 'feild' is not an option of render; did you mean field?");
   EXPECT_EQ(json(R"({"zoom":[1,2]})"), "s.json: 'zoom' is not text or a number; give one");

@@ -31,7 +31,7 @@ TEST(StderrLines, BreakBetweenPartsThenBetweenWordsThenAnywhere) {
   EXPECT_EQ(joined, std::string(1000, 'y'));
 }
 
-TEST(StderrLines, NumbersSaySomething) {
+TEST(StderrLines, NumbersHaveEnoughDigits) {
   EXPECT_EQ(time_words(1234), "1.23 s");
   EXPECT_EQ(time_words(12.34), "12.3 ms");
   EXPECT_EQ(range_words(0, 1), "0 to 1");

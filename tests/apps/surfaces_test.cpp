@@ -68,7 +68,7 @@ TEST(Surfaces, OfBlocksMayHaveColonsInTheirNames) {
   EXPECT_NE(wrong.err.find("'rde'"), std::string::npos) << wrong.err;
 }
 
-TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
+TEST(Surfaces, OfFacesAreRefusedInOneLineWithTheReason) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const auto refused = [&](const std::vector<std::string>& more, const std::string& word) {
@@ -96,7 +96,7 @@ TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
 }
 
 // It changes the meaning of the image.
-TEST(Surfaces, AWarningIsSaidQuietlyToo) {
+TEST(Surfaces, PrintsWarningsWithQuiet) {
   const Folder folder;
   const Outcome run =
       tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5000", "--quiet"});
@@ -105,7 +105,7 @@ TEST(Surfaces, AWarningIsSaidQuietlyToo) {
   EXPECT_NE(run.err.find("warning"), std::string::npos) << run.err;
 }
 
-TEST(Surfaces, AreRefusedInOneLineThatSaysWhy) {
+TEST(Surfaces, AreRefusedInOneLineWithTheReason) {
   const Folder folder;
   const std::string mesh = folder.cube();
   const auto refused = [&](std::vector<std::string> more, const std::string& word) {

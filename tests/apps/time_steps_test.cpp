@@ -55,14 +55,14 @@ TEST_F(TimeSteps, AFilmHasThePictureOfEachStep) {
   EXPECT_NE(contents(folder / "all_1.pfm"), contents(folder / "all_3.pfm"));
 }
 
-TEST_F(TimeSteps, SaysWhichIsShownAndHowToSeeAll) {
+TEST_F(TimeSteps, ReportsTheShownStepAndHowToSeeAll) {
   const Outcome one = render("a.pfm", "");
   EXPECT_NE(one.err.find("note: time step 3 of 0 to 3, the last by default; --time-step all shows them as a film"),
             std::string::npos)
       << one.err;
 }
 
-TEST_F(TimeSteps, ColorsSpanTheStepsThatAreLookedAt) {
+TEST_F(TimeSteps, ColorsSpanTheExaminedSteps) {
   const Names film = {"render",
                       volume,
                       "-o",
@@ -83,7 +83,7 @@ TEST_F(TimeSteps, ColorsSpanTheStepsThatAreLookedAt) {
   EXPECT_EQ(outcome.err.find("spans all"), std::string::npos) << outcome.err;
 }
 
-TEST_F(TimeSteps, SeriesAreChosenFromTheSameWay) {
+TEST_F(TimeSteps, AStepOfASeriesIsChosenTheSameWay) {
   const std::string cube = folder.cube();
   const std::string list =
       folder.file("f.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" file=\"" + cube +

@@ -67,7 +67,7 @@ TEST(SharedClock, ThreadsShareTheInstantsTheyWorkInAndALoneOneHasThemAll) {
   EXPECT_EQ(time.other_us, 0);
 }
 
-TEST(SharedClock, WaitingCountsWhenNobodyWorksAndOnceForAllWhoWait) {
+TEST(SharedClock, WaitingCountsOnceAndOnlyWhenNoThreadWorks) {
   const auto time = share({span(frame, 0, 0, 100), span(wait, 0, 0, 80), span(wait, 1, 10, 80), span(sort, 2, 20, 10)});
   EXPECT_EQ(time.in_frames[wait].wall_us, 80);
   EXPECT_EQ(time.in_frames[sort].wall_us, 10);
@@ -143,7 +143,7 @@ TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
   }
 }
 
-TEST(Breakdown, WhatIsDoneOnceAMeshIsCountedApartWithItsWorstProcess) {
+TEST(Breakdown, WorkOncePerMeshIsCountedSeparatelyWithItsWorstProcess) {
   const analysis::RunTime run = run_of({3, 1});
   const analysis::RoleTime& projectors = *run.role(TraceRole::projector);
   EXPECT_EQ(projectors.stage("read"), nullptr);
@@ -161,7 +161,7 @@ TEST(Breakdown, ClocksOfRanksAreBroughtTogether) {
   EXPECT_NEAR(run.kilotets_per_second.value(), 3 * 1e6 / 0.35 / 1000, 0.1);
 }
 
-TEST(Breakdown, OverlapIsTheBytesMovedInTimeAndTheFramesUnderWayTogether) {
+TEST(Breakdown, OverlapCountsBytesMovedEarlyAndConcurrentFrames) {
   // Projectors send from 84 to 90 ms of each frame; their work ends at 84, their frame at 100. Compositors begin at 80
   // and receive for 10 ms.
   TracedPipeline pipeline{2, 2, false, 4};
@@ -198,7 +198,7 @@ TEST(Breakdown, OneProcessForBothHasNoExchange) {
   EXPECT_EQ(run.overlap.frames, 0);
 }
 
-TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
+TEST(Breakdown, SpansWithoutARoleGoToTheRoleOfTheirStage) {
   TraceFile trace;
   trace.stages = {"read", "write", "project", "composite"};
   const auto add = [&](std::uint16_t stage, int rank, TraceRole role) {
@@ -218,7 +218,7 @@ TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
   EXPECT_NE(run.roles[1].stage("write"), nullptr);
 }
 
-TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
+TEST(Breakdown, ARankHasTheRolesOfItsFrames) {
   TraceFile trace;
   trace.stages = {"frame", "wait", "project", "sort"};
   for (const auto& [stage, role] :

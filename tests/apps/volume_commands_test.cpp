@@ -18,7 +18,7 @@ std::string ripples(const Folder& folder, const std::string& name, const std::st
   return folder / name;
 }
 
-TEST(VolumeCommands, AVolumeRendersVerifiedWithinWhatIsPromised) {
+TEST(VolumeCommands, AVolumeRendersWithinTheVerifiedPromise) {
   const Folder folder;
   for (const char* bits : {"8", "16", "32"})
     for (const char* projection : {"orthographic", "perspective"}) {
@@ -118,7 +118,7 @@ TEST(VolumeCommands, RectilinearGridsAreVolumesToo) {
   EXPECT_EQ(stepped.error_lines(), 1u) << stepped.err;
 }
 
-TEST(VolumeCommands, InfoSaysWhatAVolumeHolds) {
+TEST(VolumeCommands, InfoPrintsTheContentsOfAVolume) {
   const Folder folder;
   const Outcome text = tessera({"info", ripples(folder, "a.bricks")});
   EXPECT_EQ(text.status, 0) << text.err;

@@ -76,7 +76,7 @@ TEST_F(VolumeMpirun, RectilinearGridsHaveTheBytesOfOneProcessToo) {
   }
 }
 
-TEST_F(VolumeMpirun, LabelsAndFillValuesAreFoundByAllProcessesAlike) {
+TEST_F(VolumeMpirun, AllProcessesFindTheSameLabelsAndFillValues) {
   // Boxes of four labels, one of which is only in a corner, and fill values: one that is blanked, one that is only
   // noted.
   constexpr int side = 16;
@@ -159,7 +159,7 @@ TEST_F(VolumeMpirun, WeightsGiveAProcessMoreOfTheWork) {
   EXPECT_GT(processes.at(0).at("samples").get<double>(), 2 * processes.at(1).at("samples").get<double>());
 }
 
-TEST_F(VolumeMpirun, ResumeMakesOnlyWhatIsMissing) {
+TEST_F(VolumeMpirun, ResumeRendersOnlyMissingFrames) {
   const auto film = render(folder_ / "f_%d.pfm", {"--orbit", "4", "--resume"});
   ASSERT_EQ(mpirun(2, film).status, 0);
   const std::string third = contents(folder_ / "f_2.pfm");

@@ -55,7 +55,7 @@ TEST(CallersPolyhedra, AreRenderedAsTheCellsTheyAre) {
   EXPECT_EQ(Session(data).render(view, function).image.rgba, Session(same).render(view, function).image.rgba);
 }
 
-TEST(CallersPolyhedra, OneThatIsNotClosedIsLeftOutWithAWarning) {
+TEST(CallersPolyhedra, OmitsOpenPolyhedraWithAWarning) {
   House house;
   house.faces[0] = 4;
   const Dataset data = Dataset::of(house.arrays());
@@ -64,7 +64,7 @@ TEST(CallersPolyhedra, OneThatIsNotClosedIsLeftOutWithAWarning) {
   EXPECT_NE(data.warnings()[0].find("1 polyhedra are left out"), std::string::npos);
 }
 
-TEST(CallersPolyhedra, FacesThatCannotBeAreRefusedWithTheirPlace) {
+TEST(CallersPolyhedra, RefusesInvalidFacesWithTheirPlace) {
   House house;
   house.faces[4] = 9;
   EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron with point 9 in a face, of 9 points"), std::string::npos)

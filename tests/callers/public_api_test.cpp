@@ -280,7 +280,7 @@ TEST(CallersTrace, RanksSpansGoIntoOneFileWithTheirRoles) {
           << rank;
 }
 
-TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
+TEST(CallersBalance, NeedsAFrameThatKeptItsCost) {
   const Dataset data = Dataset::of(std::make_shared<const Waves>());
   Session session(data);
   const View view = data.default_view(size);
@@ -300,7 +300,7 @@ TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
   EXPECT_THROW(static_cast<void>(of_mesh.balance_pictures(frame, view, function)), Error);
 }
 
-TEST(CallersBalance, OfSortLastBricksHaveTheColoursOfThePartsTheyLieIn) {
+TEST(CallersBalance, SortLastDrawsBricksInTheColoursOfTheirParts) {
   const Dataset data = Dataset::of(std::make_shared<const Waves>());
   const View view = data.default_view(size);
   const TransferFunction function = data.transfer_function().function;
@@ -330,7 +330,7 @@ TEST(CallersBalance, OfSortLastBricksHaveTheColoursOfThePartsTheyLieIn) {
   });
 }
 
-TEST(CallersDevice, WhatNoErrorIsPromisedOfSaysSo) {
+TEST(CallersDevice, PromisesAnErrorWhereNoDeviceIsRequested) {
   const Cubes cubes(1);
   const Dataset data = Dataset::of(cubes.arrays());
   EXPECT_TRUE(Session(data).promised_error().has_value());
@@ -447,7 +447,7 @@ TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
 }
 #endif
 
-TEST(CallersFiles, JsonMeansWhatItSays) {
+TEST(CallersFiles, JsonHasItsDocumentedMeaning) {
   EXPECT_NO_THROW(check_json(R"({"a": 1, "b": [2]})", "a.json"));
   EXPECT_THROW(check_json(R"({"a": 1, "a": 2})", "twice"), Error);
   EXPECT_THROW(check_json("{", "short"), Error);

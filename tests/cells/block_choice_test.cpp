@@ -11,7 +11,7 @@
 namespace tessera::io {
 namespace {
 
-TEST(BlockChoice, ANameIsThatOfABlockOrAnEndOfItsPath) {
+TEST(BlockChoice, AcceptsABlocksNameOrTheEndOfItsPath) {
   EXPECT_TRUE(cells::means_block("fluid", "fluid"));
   EXPECT_TRUE(cells::means_block("fluid", "fluid/internalMesh"));
   EXPECT_TRUE(cells::means_block("internalMesh", "fluid/internalMesh"));
@@ -55,7 +55,7 @@ TEST(BlockChoice, OnlyTheNamedBlocksAreRead) {
   for (const glm::dvec3& p : some.mesh.positions) EXPECT_FALSE(p.x > 5 && p.x < 15);
 }
 
-TEST(BlockChoice, ANameOfNoBlockIsRefusedWithThoseThereAre) {
+TEST(BlockChoice, RefusesAnUnknownNameAndListsTheBlocks) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 2\n" + zone(1, 0) + zone(2, 10));
   ReadOptions options;

@@ -137,7 +137,7 @@ TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
   EXPECT_NEAR(testing::volume(file.mesh), area * up, 1e-12 * area * up);
 }
 
-TEST(CellShape, KnowsEveryVolumetricTypeAndRefusesTheRest) {
+TEST(CellShape, SupportsEveryVolumetricTypeAndRefusesTheRest) {
   EXPECT_EQ(cells::cell_shape(10).kind, cells::CellKind::tet);
   EXPECT_EQ(cells::cell_shape(25).corners, 8);
   EXPECT_TRUE(cells::cell_shape(25).higher_order);

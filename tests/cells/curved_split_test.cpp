@@ -92,7 +92,7 @@ TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
   }
 }
 
-TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
+TEST(CurvedCell, HasItsNodesAtTheLatticePoints) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const Kind& kind : kinds) {
@@ -378,7 +378,7 @@ TEST(CurvedSplit, LeavesNoCracksBetweenRationalCells) {
   }
 }
 
-TEST(CurvedSplit, TakesEqualWeightsForNone) {
+TEST(CurvedSplit, TreatsEqualWeightsAsAbsent) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   const Kind kind{79, 27, 1, {2, 2, 2}};
   const cells::MeshFile without =
@@ -391,7 +391,7 @@ TEST(CurvedSplit, TakesEqualWeightsForNone) {
   EXPECT_EQ(with.mesh.scalars, without.mesh.scalars);
 }
 
-TEST(CurvedSplit, DrawsCellsOfUnusableWeightsByTheirCornersAndSaysSo) {
+TEST(CurvedSplit, ReportsCellsWithUnusableWeightsAndDrawsTheirCorners) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e9}) {
     cells::CellBlock block = quarter_tube();
     bool is_first = true;
@@ -525,7 +525,7 @@ TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
   }
 }
 
-TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
+TEST(CurvedSplit, DoesNotDivideCellsForInfiniteDistances) {
   cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3& p) { return p.x; }, false);
   block.positions[block.connectivity[4]].z = 1e308;  // its square is not finite

@@ -61,7 +61,7 @@ scene::TetMesh with_copies(scene::TetMesh mesh, const auto& again, unsigned seed
   return mesh;
 }
 
-TEST(DuplicateCells, AMeshWithoutHasNone) {
+TEST(DuplicateCells, AMeshWithoutDuplicatesHasNone) {
   for (const bool own_points : {false, true}) {
     scene::TetMesh mesh = mixed_tets(own_points);
     const std::size_t tets = mesh.tets.size();
@@ -90,7 +90,7 @@ TEST(DuplicateCells, AreFoundByTheirCornersAndDropped) {
   }
 }
 
-TEST(DuplicateCells, ATetThatIsPartOfAnotherCellIsNone) {
+TEST(DuplicateCells, ATetInsideAnotherCellIsNotADuplicate) {
   const scene::TetMesh once = mixed_tets(false);
   scene::TetMesh mesh = once;
   std::size_t split = 0;  // a tet of a cell with several
@@ -217,7 +217,7 @@ TEST_F(DuplicateFiles, KeysOfPartsGiveTheCountOfTheWhole) {
   EXPECT_EQ(cells::count_repetitions(keys, 3), 2 * expected);
 }
 
-TEST_F(DuplicateFiles, ABlankCopyIsNotDrawnAndNoDuplicate) {
+TEST_F(DuplicateFiles, ABlankCopyIsNeitherDrawnNorADuplicate) {
   std::vector<cells::CellBlock> blocks;
   blocks.push_back(testing::mixed_mesh(3, 5, false));
   blocks.push_back(testing::mixed_mesh(3, 5, false));

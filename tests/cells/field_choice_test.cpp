@@ -64,7 +64,7 @@ TEST(FieldChoice, DefaultTakesPointsBeforeCellsAndScalarsBeforeVectors) {
   EXPECT_EQ(choose("", block_with({cell, vector, field("p", Association::point, {0, 1})})).label, "p");
 }
 
-TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
+TEST(FieldChoice, IndicesAndPartsAreNotDefaultsWhereShapesAreShown) {
   const cells::CellBlock labels =
       block_with({field("vtkOriginalCellIds", Association::cell, {0, 1}), field("BLOCK_I", Association::cell, {0, 1})});
   const std::vector<cells::FieldSummary> fields = summary({&labels, 1});
@@ -82,7 +82,7 @@ TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
     EXPECT_FALSE(cells::is_label_name(name));
 }
 
-TEST(FieldChoice, NamesTellLabelsOfWholeNumbersOnly) {
+TEST(FieldChoice, NamesIndicateLabelsOfWholeNumbersOnly) {
   const cells::BlockField other = field("other", Association::cell, {0.5, 0.75});
   for (const char* name : {"k", "i", "K", "zone", "process", "proc", "block", "region", "rank", "material_id"}) {
     const cells::CellBlock quantity = block_with({field(name, Association::point, {0.25, 3, 7, 7}), other});
@@ -136,7 +136,7 @@ TEST(FieldChoice, NumbersOfPointsAreIdsByAnyName) {
   EXPECT_EQ(choose("", block_with({field("v", Association::point, axis, 3), cells})).label, "v:mag");
 }
 
-TEST(FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
+TEST(FieldChoice, RecognizesIdsInBlocksAndParts) {
   const cells::BlockField cells = field("porosity", Association::cell, {0.1, 0.2});
   std::vector<double> whole = shuffled(200, 0);
   const auto block_of = [&](std::size_t first, std::size_t count) {
@@ -157,7 +157,7 @@ TEST(FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
   EXPECT_FALSE(summary(other)[0].ids);
 }
 
-TEST(FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
+TEST(FieldChoice, IdsAreTheLastChoiceAndAreNoted) {
   const cells::BlockField constant = field("T", Association::point, {300, 300});
   const cells::CellBlock many = block_with({field("nr", Association::point, shuffled(100, 0)), constant});
   EXPECT_TRUE(cells::choose_field("", summary(std::vector{many}), "mesh.vtu", true).shape);
@@ -181,7 +181,7 @@ TEST(FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
     EXPECT_FALSE(cells::is_label_name(name)) << name;
 }
 
-TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
+TEST(FieldChoice, NoiseAroundZeroIsShownWithANote) {
   const cells::BlockField noise = field("y", Association::point, {-1e-15, 2e-15});
   EXPECT_EQ(choose("", block_with({noise, field("p", Association::cell, {0, 1})})).label, "p");
   const cells::FieldChoice alone = choose("", block_with({noise}));
@@ -192,7 +192,7 @@ TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
   EXPECT_TRUE(choose("", block_with({field("k", Association::point, {1e-15, 2e-13})})).notes.empty());
 }
 
-TEST(FieldChoice, AFileWithoutFieldsSaysSo) {
+TEST(FieldChoice, ReportsAFileWithoutFields) {
   const cells::FieldChoice choice = choose("", cells::CellBlock{});
   EXPECT_TRUE(choice.name.empty());
   ASSERT_EQ(choice.notes.size(), 1u);
@@ -236,7 +236,7 @@ TEST(FieldChoice, AWrongNameListsAllNames) {
             "point:'StagnationEnergy', cell:'ObjectId', cell:'stress: max'");
 }
 
-TEST(FieldChoice, LabelsAreToldFromWords) {
+TEST(FieldChoice, RecognizesLabelsByTheirNames) {
   for (const char* name :
        {"GlobalNodeId", "ObjectId", "vtkOriginalCellIds", "vtkGhostType", "IBlank", "node_id", "Material #", "PartIDs"})
     EXPECT_TRUE(cells::is_label_name(name)) << name;

@@ -269,7 +269,7 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
     }
 }
 
-TEST(MeshAssembly, OfSeveralBadCellsTheFirstIsToldWhicheverThreadFindsIt) {
+TEST(MeshAssembly, ReportsTheFirstBadCellWhicheverThreadFindsIt) {
   cells::CellBlock block = many_cells(200'000);
   for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
   ReadOptions options;

@@ -207,7 +207,7 @@ TEST(Threshold, GoesByTheCellsValue) {
   EXPECT_EQ(high.cells_out_of_range, below);
 }
 
-TEST(Selection, RefusesWhatSelectsNothing) {
+TEST(Selection, RefusesEmptySelections) {
   EXPECT_THROW(validate(Selection{{{{0, 0, 0}, {0, 0, 0}}}}), scene::Error);
   EXPECT_THROW(validate(Selection{{{{0, 0, NAN}, {0, 0, 1}}}}), scene::Error);
   EXPECT_THROW(validate(Selection{{}, {{2, 1}}}), scene::Error);

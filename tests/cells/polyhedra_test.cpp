@@ -200,7 +200,7 @@ TEST(PolyhedronCells, MeetHexahedraWedgesAndPyramids) {
   }
 }
 
-TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherWay) {
+TEST(PolyhedronCells, HexahedraNotVisibleFromTheirSmallestCornerAreSplitDifferently) {
   int overlapping = 0;
   for (unsigned seed = 1; seed < 6; ++seed) {
     std::mt19937 random(seed);

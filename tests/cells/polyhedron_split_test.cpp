@@ -124,7 +124,7 @@ TEST(FaceTriangles, OfAFaceWithCornersOnItsEdgesKeepThemAll) {
   }
 }
 
-TEST(PolyhedronSplit, TakesFacesWhicheverWayTheyTurn) {
+TEST(PolyhedronSplit, AcceptsFacesOfAnyOrientation) {
   for (unsigned seed = 1; seed < 20; ++seed) {
     std::mt19937 random(seed);
     const cells::MeshFile file = assembled(polyhedra_of(cube_points(), {cube_faces()}, random));
@@ -133,7 +133,7 @@ TEST(PolyhedronSplit, TakesFacesWhicheverWayTheyTurn) {
   }
 }
 
-TEST(PolyhedronSplit, LeavesOutWithAWarningWhatIsNotClosed) {
+TEST(PolyhedronSplit, OmitsOpenPolyhedraWithAWarning) {
   std::mt19937 random(1);
   std::vector<glm::dvec3> p = cube_points();
   for (const glm::dvec3& x : cube_points(2)) p.push_back(x);
@@ -152,7 +152,7 @@ TEST(PolyhedronSplit, LeavesOutWithAWarningWhatIsNotClosed) {
   test::expect_bad_input([&] { assembled(polyhedra_of(p, {open}, random)); }, {"2 are polyhedra whose faces do not"});
 }
 
-TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
+TEST(PolyhedronSplit, CutsPolyhedraThatNoPointSeesWhole) {
   // A U of five unit squares, of height one: no point sees all of it.
   std::vector<glm::dvec3> p;
   for (const double z : {0.0, 1.0})
@@ -171,7 +171,7 @@ TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
   EXPECT_TRUE(cells::warnings_on_cells(file.counts, {}).empty());
 }
 
-TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
+TEST(PolyhedronSplit, AddsAPointWhereCornersAloneAllowNoTets) {
   // Schoenhardt's polyhedron (1928): a prism over a triangle, twisted by 30 degrees until its side faces bend inward.
   std::vector<glm::dvec3> p;
   for (const double turn : {0.0, 1.0})
@@ -193,7 +193,7 @@ TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
   EXPECT_NEAR(testing::volume(file.mesh), 2 * signed6 / 6, 1e-13);
 }
 
-TEST(PolyhedronSplit, WarnsOfTetsThatOverlapWhereItFindsNoWay) {
+TEST(PolyhedronSplit, WarnsOfOverlappingTetsWhereItCannotSplit) {
   // A cube with a smaller cube cut out inside.
   std::vector<glm::dvec3> p = cube_points();
   for (const glm::dvec3& x : cube_points()) p.push_back(0.5 * x + glm::dvec3(0.25));

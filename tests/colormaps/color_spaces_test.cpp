@@ -8,7 +8,7 @@
 namespace tessera::colormaps {
 namespace {
 
-TEST(ColorSpaces, SrgbDecodesAsItsStandardSays) {
+TEST(ColorSpaces, SrgbDecodesByItsStandard) {
   EXPECT_DOUBLE_EQ(decode_srgb(0.0), 0);
   EXPECT_DOUBLE_EQ(decode_srgb(1.0), 1);
   EXPECT_DOUBLE_EQ(decode_srgb(0.04), 0.04 / 12.92);
@@ -73,7 +73,7 @@ TEST(ColorSpaces, GreysStayGrey) {
     }
 }
 
-TEST(ColorSpaces, HueTakesTheShortWayOnlyIfItMayWrap) {
+TEST(ColorSpaces, HueTakesTheShorterPathOnlyIfItMayWrap) {
   const glm::dvec3 red{1, 0, 0.2}, orange{1, 0.2, 0};  // either side of hue 0
   EXPECT_LT(mix_colors(red, orange, 0.5, ColorSpace::hsv, true).y, 0.01);
   EXPECT_GT(mix_colors(red, orange, 0.5, ColorSpace::hsv, false).y, 0.9);  // through cyan

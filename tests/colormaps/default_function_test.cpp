@@ -144,7 +144,7 @@ TEST(DefaultFunction, PointsOfAnOpacityCurveAreFractionsOfTheRange) {
   EXPECT_EQ(function.evaluate(6).extinction, function.evaluate(9).extinction);
 }
 
-TEST(FarOff, IsAFunctionThatTellsNothingOfAField) {
+TEST(FarOff, DetectsFunctionsThatMissTheField) {
   EXPECT_TRUE(is_far_off({0, 1}, {0, 1e5}));
   EXPECT_TRUE(is_far_off({0, 1}, {2, 3}));
   EXPECT_TRUE(is_far_off({0, 1}, {0.5, 0.501}));

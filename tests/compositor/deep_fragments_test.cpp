@@ -228,7 +228,7 @@ TEST(DeepFragments, OverlappingCellsComeOutOneBehindTheOther) {
   EXPECT_NEAR(optical_depth, 0.7 * (2 + 0.5 + 2 + 1), 1e-9);
 }
 
-TEST(DeepFragments, FloatsStayTidyWhereDepthsCannotBeToldApart) {
+TEST(DeepFragments, FloatsStayTidyWhereDepthsAreIndistinguishable) {
   // Near 1.6e7 floats are 1 or 2 apart: samples of length a tenth become points or get whole units.
   std::mt19937 random(3);
   std::vector<DeepSample> samples;

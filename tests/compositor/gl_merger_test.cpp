@@ -317,7 +317,7 @@ Stack deep_stack(const char* arrangement, bool one_depth) {
   return stack;
 }
 
-TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByCompute) {
+TEST_P(Arrangements, ComputeShadersCompositeOneDeepPixelAmongShallowOnes) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   const GlFrame frame(exact);
   for (const bool one_depth : {false, true}) {
@@ -331,7 +331,7 @@ TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByCompute) {
   }
 }
 
-TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByFragments) {
+TEST_P(Arrangements, FragmentShadersCompositeOneDeepPixelAmongShallowOnes) {
   TESSERA_DEVICE_OR_SKIP(device, fragment(false));
   const GlFrame frame(sampled);
   for (const bool one_depth : {false, true}) {

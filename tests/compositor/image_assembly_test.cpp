@@ -94,7 +94,7 @@ exchange::FrameEnd end_with(std::uint64_t fragments, std::uint64_t stopped = 0) 
   return end;
 }
 
-TEST(ImageAssembly, TilesFromAnyoneInAnyOrderMakeThePictureOnce) {
+TEST(ImageAssembly, TilesFromAnyRankInAnyOrderMakeTheImageOnce) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     std::mt19937 random(seed);
     const int compositors = 1 + static_cast<int>(seed % 3);
@@ -208,7 +208,7 @@ TEST(ImageAssembly, FramesThatOverlapDoNotMix) {
   for (const std::uint32_t frame : {5u, 6u}) EXPECT_EQ(images[frame].depth[0], tiles[frame - 5].image.depth[0]);
 }
 
-TEST(ImageAssembly, AStoppedFrameTellsOnlyOfTilesThatCame) {
+TEST(ImageAssembly, AStoppedFrameReportsOnlyReceivedTiles) {
   Job job(1);
   std::mt19937 random(1);
   {
@@ -240,7 +240,7 @@ bool is_refused(const Bytes& bytes) {
   }
 }
 
-TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
+TEST(ImageAssembly, RefusesTruncatedChangedAndForeignMessages) {
   Job job(1);
   std::mt19937 random(1);
   {

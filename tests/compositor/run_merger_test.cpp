@@ -103,7 +103,7 @@ scene::Image merged(const Scene& scene, const Runs& runs, std::array<bool, proje
   return merger->finish().image;
 }
 
-TEST(RunMerger, AscendingPartsSideBySideAreWhatTheyAreInAnyOrder) {
+TEST(RunMerger, AscendingPartsSideBySideMatchUnorderedParts) {
   const Scene scene;
   std::mt19937 random(11);
   for (int trial = 0; trial < 50; ++trial) {
@@ -137,7 +137,7 @@ TEST(RunMerger, RunsCompositeFrontToBack) {
   }
 }
 
-TEST(RunMerger, PartsThatAreNotWhatTheySayAreRefused) {
+TEST(RunMerger, RefusesMislabelledParts) {
   const Scene scene;
   const exchange::LatticeRun run{0, 1000, 0.1f, 0.1f, 0.1f, 0.1f};
   const projection::LatticeSegment segment{0, 1000, 0, 0};

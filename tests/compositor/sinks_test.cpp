@@ -203,7 +203,7 @@ class Sinks : public ::testing::Test {
 using Encodings = ::testing::Types<DoubleEncoding, LatticeEncoding>;
 TYPED_TEST_SUITE(Sinks, Encodings);
 
-TYPED_TEST(Sinks, SegmentsTravelOnceEachHoweverTheyAreTaken) {
+TYPED_TEST(Sinks, EachSegmentIsSentOnceInAnyOrder) {
   for (const std::size_t most : {1, 20, 300})
     for (const How how : {How::in_order, How::unordered}) {
       const Scene scene(static_cast<std::uint32_t>(most), most, 5);
@@ -274,7 +274,7 @@ Sent joined(const std::vector<Sent>& sent, std::size_t pixel) {
   return whole;
 }
 
-TYPED_TEST(Sinks, RunsThatAreCutInDepthAreInAllWhatTheyWere) {
+TYPED_TEST(Sinks, RunsCutInDepthKeepTheirTotal) {
   for (const How how : {How::in_order, How::unordered}) {
     const Scene scene(7, 200, 1);
     Parts parts, uncut;
@@ -308,7 +308,7 @@ TYPED_TEST(Sinks, CutsFreeTheCompositorBeforeTheTileEnds) {
   EXPECT_GT(parts.parts[1].final_depth, parts.parts[0].final_depth);
 }
 
-TYPED_TEST(Sinks, BehindOpaqueRunsNothingIsSentButWhereWhatHidesItMayComeLater) {
+TYPED_TEST(Sinks, SendsNothingBehindOpaqueRunsUnlessThoseMayComeLater) {
   Scene scene(3, 200, 2000);                                          // dark after a few segments
   const double weight = scene.integrator.termination_error() / 1e-4;  // pixels close at a transmittance of 1e-4
   std::size_t in_all = 0, in_order = 0, unordered = 0;

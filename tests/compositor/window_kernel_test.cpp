@@ -139,7 +139,7 @@ TEST(CompositeWindows, APixelsBitsDoNotDependOnTheWindows) {
   });
 }
 
-TEST(CompositeWindows, APixelClosesBehindTooLittleLightAndNoneBefore) {
+TEST(CompositeWindows, APixelEndsOnlyWhenTooLittleLightRemains) {
   int closed = 0;
   for_each_case([&](RandomRays& rays, std::uint32_t seed) {
     const Table table(rays);

@@ -123,7 +123,7 @@ TEST(Generators, TheSeamHasVerticesOfItsOwnAndTheSameShape) {
   EXPECT_EQ(count_faces(seamed).boundary, count_faces(closed).boundary);
 }
 
-TEST(Generate, NamesWhatIsWrongAndWhatThereIs) {
+TEST(Generate, ReportsErrorsAndListsTheKinds) {
   const auto message = [](const std::string& kind, const std::map<std::string, double>& parameters) -> std::string {
     try {
       generate(kind, parameters);

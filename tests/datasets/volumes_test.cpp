@@ -69,7 +69,7 @@ TEST(Volumes, FieldsOfNoiseAreTheSameOnEveryMachine) {
 }
 
 // Moloney 2008, Table 6.2 and 6.7.1 (volume_fields.hpp).
-TEST(Volumes, AsManyBricksShowAsOfTheVolumesTheyStandFor) {
+TEST(Volumes, HaveAsManyVisibleBricksAsTheVolumesTheyRepresent) {
   constexpr std::size_t n = 129;
   const std::vector<float> head = samples_of("head", {{"n", n}});
   EXPECT_NEAR(share_shown(head, n, 32, 0.25f, 2), 0.406, 0.02);
@@ -96,7 +96,7 @@ TEST(Volumes, NoTwoBricksOfTurbulenceAreAlike) {
   EXPECT_EQ(std::adjacent_find(bricks.begin(), bricks.end()), bricks.end());
 }
 
-TEST(Volumes, NamesAndSizesThatAreNoneAreTold) {
+TEST(Volumes, ReportsInvalidNamesAndSizes) {
   const auto message = [](const std::string& kind, const std::map<std::string, double>& parameters) -> std::string {
     try {
       generate_volume(kind, parameters);

@@ -12,7 +12,7 @@
 namespace tessera::exchange {
 namespace {
 
-TEST(Bells, WakeTheRankThatTheyAreRungFor) {
+TEST(Bells, WakeTheRankTheyAreRungFor) {
   run_ranks(3, [](Transport& transport) {
     const auto bells = Bells::hung(transport);
     ASSERT_NE(bells, nullptr);
@@ -31,7 +31,7 @@ TEST(Bells, WakeTheRankThatTheyAreRungFor) {
   });
 }
 
-TEST(Bells, ARankThatNobodyRingsForSleepsAsLongAsItWants) {
+TEST(Bells, ARankWithoutAWakeUpSleepsForItsWholeTimeout) {
   run_ranks(2, [](Transport& transport) {
     const auto bells = Bells::hung(transport);
     const auto start = std::chrono::steady_clock::now();
@@ -43,7 +43,7 @@ TEST(Bells, ARankThatNobodyRingsForSleepsAsLongAsItWants) {
   });
 }
 
-TEST(Bells, OfOneRankThereAreNone) {
+TEST(Bells, OneRankNeedsNone) {
   run_ranks(1, [](Transport& transport) { EXPECT_EQ(Bells::hung(transport), nullptr); });
 }
 

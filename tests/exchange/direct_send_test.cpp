@@ -152,7 +152,7 @@ TEST(DirectSend, BandsAreNearWhereRanksHavePixels) {
   EXPECT_EQ(band_numbers(own), (std::vector<int>{3, 0, 2, 1}));
 }
 
-TEST(DirectSend, ARankThatWasStoppedIsMissedByAllBands) {
+TEST(DirectSend, AStoppedRankIsMissingInAllBands) {
   for (const tessera::DirectSend how : {tessera::DirectSend::asynchronous, tessera::DirectSend::synchronous})
     run_ranks(3, [&](Transport& transport) {
       const std::vector<int> order{2, 0, 1}, bands{0, 1, 2};

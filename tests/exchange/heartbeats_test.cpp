@@ -85,7 +85,7 @@ class SimulatedJob {
   std::vector<Heartbeats> ranks_;
 };
 
-TEST(Heartbeats, NobodySpeaksWhileAllRunHoweverSlowTheirMessages) {
+TEST(Heartbeats, ReportsNothingWhileAllRanksRunWithSlowMessages) {
   for (const int delay : {0, 500, 3000, 6000}) {
     SimulatedJob job(4, true, 1, milliseconds(delay));
     job.run(100 * timeout);
@@ -94,7 +94,7 @@ TEST(Heartbeats, NobodySpeaksWhileAllRunHoweverSlowTheirMessages) {
   }
 }
 
-TEST(Heartbeats, AStoppedRankIsNamedOnceAndItsReturnSaid) {
+TEST(Heartbeats, ReportsAStoppedRankOnceAndItsReturn) {
   SimulatedJob job(4, false, 1);
   job.run(timeout);
   job.stop(2);
@@ -110,14 +110,14 @@ TEST(Heartbeats, AStoppedRankIsNamedOnceAndItsReturnSaid) {
   EXPECT_EQ(job.said[0][1].find("rank 2 of 4 (process 1002) is back after 9"), 0u) << job.said[0][1];
 }
 
-TEST(Heartbeats, ALongStallIsSaidAgainEverTwiceAsLate) {
+TEST(Heartbeats, ALongStallIsReportedAgainAtDoublingIntervals) {
   SimulatedJob job(2, false, 1);
   job.stop(1);
   job.run(35 * timeout);
   EXPECT_EQ(job.all_said().size(), 6u);  // after 1, 2, 4, 8, 16 and 32 times
 }
 
-TEST(Heartbeats, OfAStoppedFirstRankTheLowestThatRunsSpeaks) {
+TEST(Heartbeats, TheLowestRunningRankReportsAStoppedFirstRank) {
   for (const int also_stopped : {0, 1}) {
     SimulatedJob job(5, false, 1);
     job.run(timeout);
@@ -130,7 +130,7 @@ TEST(Heartbeats, OfAStoppedFirstRankTheLowestThatRunsSpeaks) {
   }
 }
 
-TEST(Heartbeats, OneRankEndsTheRunWhereThatIsAsked) {
+TEST(Heartbeats, OneRankEndsTheRunOnRequest) {
   for (const int stopped : {0, 1, 3}) {
     SimulatedJob job(4, true, 1);
     job.run(timeout);
@@ -145,7 +145,7 @@ TEST(Heartbeats, OneRankEndsTheRunWhereThatIsAsked) {
   }
 }
 
-TEST(Heartbeats, AJobThatWasStoppedAsAWholeAccusesNobody) {
+TEST(Heartbeats, AJobThatWasStoppedAsAWholeReportsNoRank) {
   for (int ranks = 2; ranks < 6; ++ranks) {
     SimulatedJob job(ranks, true, 1);
     job.run(timeout);

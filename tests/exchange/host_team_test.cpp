@@ -33,12 +33,12 @@ TEST(HostTeam, IsOfTheRanksThatJoin) {
   });
 }
 
-TEST(HostTeam, IsNoneOfOne) {
+TEST(HostTeam, DoesNotFormForOneRank) {
   run_ranks(3, [](Transport& transport) { EXPECT_EQ(HostTeam::form(transport, transport.rank() == 1), nullptr); });
   run_ranks(1, [](Transport& transport) { EXPECT_EQ(HostTeam::form(transport, true), nullptr); });
 }
 
-TEST(HostTeam, GathersAWordOfEachTimeAfterTime) {
+TEST(HostTeam, GathersAWordFromEachRankRepeatedly) {
   run_ranks(4, [](Transport& transport) {
     const auto team = HostTeam::form(transport, true);
     team->begin();
@@ -50,7 +50,7 @@ TEST(HostTeam, GathersAWordOfEachTimeAfterTime) {
   });
 }
 
-TEST(HostTeam, SeesWhatOthersWroteThroughGrowthAndShrinking) {
+TEST(HostTeam, SharesDataThroughGrowthAndShrinking) {
   run_ranks(3, [](Transport& transport) {
     const auto team = HostTeam::form(transport, true);
     team->begin();
@@ -93,7 +93,7 @@ TEST(HostTeam, DrawsEachNumberOnceAnEpoch) {
   }
 }
 
-TEST(HostTeam, WhoLeavesAnEpochHoldsNobodyUpAndIsThereInTheNext) {
+TEST(HostTeam, ARankThatLeavesAnEpochBlocksNoOtherAndJoinsTheNext) {
   std::atomic<int> stopped = 0;
   run_ranks(3, [&](Transport& transport) {
     const auto team = HostTeam::form(transport, true);
@@ -153,7 +153,7 @@ TEST(HostTeam, MemoryThatTheMachineDoesNotHaveIsAnErrorOfAll) {
   EXPECT_EQ(told, 2);
 }
 
-TEST(SharedPages, OfAnotherSizeOrNotThereAreRefused) {
+TEST(SharedPages, OfAnotherSizeOrMissingAreRefused) {
   const SharedPages pages = SharedPages::made(5000);
   const auto process = static_cast<std::uint64_t>(getpid());
   EXPECT_TRUE(SharedPages::opened(process, pages.descriptor(), 5000));

@@ -172,7 +172,7 @@ TEST(Message, NoBytesAtRandomCrashAReader) {
   }
 }
 
-TEST(Collectives, ARankThatIsElsewhereInItsProgramEndsTheRun) {
+TEST(Collectives, ARankInAnotherCollectiveEndsTheRun) {
   try {
     run_ranks(3, [](Transport& transport) {
       if (transport.rank() == 2)

@@ -313,7 +313,7 @@ TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
                        {0, 32, false}, {0, 32, true}, {1, 0, true}, {2, 64, true}, {3, 0, true}}));
 }
 
-TEST(Outbox, AThreadThatWaitsKeepsNothingBackThatOthersAwait) {
+TEST(Outbox, AWaitingThreadHoldsBackNothing) {
   Job job(2, 100 << 10, 50 << 10);
   const TileMap map(2, 2, 1);
   Outbox outbox(job.projector, job.settings);
@@ -331,7 +331,7 @@ TEST(Outbox, AThreadThatWaitsKeepsNothingBackThatOthersAwait) {
   EXPECT_THROW(later.get(), scene::Error);
 }
 
-TEST(Outbox, AStoppedFrameEndsEveryTileThatHasNotEndedAndSaysSo) {
+TEST(Outbox, AStoppedFrameEndsEveryOpenTileAndReportsIt) {
   Job job(2, 1 << 20, 1 << 20);
   const TileMap map(8, 2, 3);
   std::vector<bool> has_parts(8, true);

@@ -143,7 +143,7 @@ std::string refusal(const Bytes& bytes, const PixelRect& rect) {
   }
 }
 
-TEST(PackedPixels, RefuseWhatIsNoPicture) {
+TEST(PackedPixels, RefuseInvalidMessages) {
   std::mt19937 random(2);
   scene::Image image({70, 60});
   half_empty(image, random);

@@ -144,7 +144,7 @@ TEST(FirstContact, EndsTheRunWhicheverMessageIsLost) {
     }
 }
 
-TEST(Collectives, GiveEveryRankTheSameInRankOrderHoweverOftenAndFromWhateverRoot) {
+TEST(Collectives, GiveEveryRankTheSameInRankOrderFromAnyRoot) {
   for (const int ranks : {1, 2, 3, 8})
     run_ranks(ranks, [&](Transport& transport) {
       for (int round = 0; round < 50; ++round) {

@@ -153,7 +153,7 @@ TEST_P(Accuracy, RaysHitTheMeshWhereTheReferenceDoesAndAreAsLongInIt) {
   }
 }
 
-TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
+TEST(AccuracyOfLanes, UncertainRaysAreRenderedInDoublePrecision) {
   const scene::TetMesh mesh = datasets::cube(6, 0.2);
   const Camera camera = view(ProjectionKind::orthographic, 1.4, {2.2, 1.4, 3}, {0, 0, 0});
   const auto expect_kept = [&](double accuracy, const TransferFunction& function, Emission emission,

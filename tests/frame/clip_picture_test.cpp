@@ -236,7 +236,7 @@ TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
 }
 
 /// Another caller's use: a part of a data set of arrays, verified against the whole.
-TEST(SelectedDataset, IsVerifiedByTheWhole) {
+TEST(SelectedDataset, IsVerifiedAgainstTheWhole) {
   const scene::TetMesh mesh = datasets::cube(4);
   MeshArrays arrays;
   arrays.points = mesh.positions;

@@ -232,7 +232,7 @@ TEST(Deep, AnEmptyPictureHasNoSamples) {
   EXPECT_EQ(read.begin, std::vector<std::uint64_t>(64, 0));
 }
 
-TEST(Deep, SaysThatItsSamplesExceedTheBudget) {
+TEST(Deep, ReportsThatItsSamplesExceedTheBudget) {
   Settings settings = exact();
   settings.memory_bytes = 16 << 20;
   const scene::TetMesh mesh = datasets::cube(12, 0.2);

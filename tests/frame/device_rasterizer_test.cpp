@@ -180,7 +180,7 @@ TEST(DeviceRasterizer, SamplesAreThoseOfPlanes) {
   }
 }
 
-TEST(DeviceRasterizer, WhatDevicesDoNotIntegrateIsTheCpus) {
+TEST(DeviceRasterizer, TheCpuRasterizesScenesTooThickForTheLattice) {
   TESSERA_NEEDS_OSMESA();
   const scene::TetMesh mesh = small_cube();
   GlJobSetup setup = on_device();
@@ -209,7 +209,7 @@ TEST(DeviceRasterizer, TheCpuTakesOverWhereTheDeviceFails) {
   }
 }
 
-TEST(DeviceRasterizer, WhatIsNotThereIsTheCpusUnderAutomatic) {
+TEST(DeviceRasterizer, AutomaticUsesTheCpuForMissingDevices) {
   GlJobSetup setup = on_device(Backend::automatic);
   setup.software_will_do = false;
   const auto frames = rendered(setup, small_cube());

@@ -87,7 +87,7 @@ TEST(BoundarySurface, OfCellDataHasEachCellsColour) {
   EXPECT_NEAR(image.rgba[4 * image.index(4, 4)], 0.25, 1e-6);
 }
 
-TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
+TEST(TriangleSurface, IsBetweenTheDataInFrontAndBehind) {
   Surfaces surfaces;
   surfaces.light = even_light;
   const scene::TetMesh mesh = datasets::cube(3, 0.2);
@@ -106,7 +106,7 @@ TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
   }
 }
 
-TEST(TriangleSurface, HasNoGapsAtItsEdgesAndNoneIsMetTwice) {
+TEST(TriangleSurface, HasNeitherGapsNorDuplicateHitsAtItsEdges) {
   Surfaces surfaces;
   surfaces.light = even_light;
   // Pixel centres are on the diagonal, and rows and columns of them on the sides of inner squares.
@@ -309,7 +309,7 @@ RandomCase random_face_case(Random& random) {
   return c;
 }
 
-TEST(FaceSurfaces, RandomOnesKeepThePromise) { expect_random_cases_right(23, 150, random_face_case); }
+TEST(FaceSurfaces, RandomSurfacesKeepThePromise) { expect_random_cases_right(23, 150, random_face_case); }
 
 TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 40);

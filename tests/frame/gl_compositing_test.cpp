@@ -87,7 +87,7 @@ scene::Error error_of(const GlJobSetup& setup) {
   return scene::bad_input("");
 }
 
-TEST(GlCompositing, ADeviceThatFailsUnderWayEndsTheJobOnAllRanks) {
+TEST(GlCompositing, ADeviceThatFailsDuringTheRunEndsTheJobOnAllRanks) {
   TESSERA_NEEDS_OSMESA();
   for (const auto fault : {compositor::GlFault::lost, compositor::GlFault::memory}) {
     GlJobSetup setup;
@@ -108,7 +108,7 @@ TEST(GlCompositing, BackendsMustBeOneOrOneForEachCompositor) {
   EXPECT_EQ(error_of(setup).code(), scene::ErrorCode::bad_input);
 }
 
-TEST(GlCompositing, AutomaticGoesOnWithTheCpuWhereTheDeviceFailsAndSaysSo) {
+TEST(GlCompositing, AutomaticFallsBackToTheCpuAndReportsIt) {
   try {
     static_cast<void>(gl::open_context(gl::Platform::egl));
   } catch (const scene::Error& error) {

@@ -50,7 +50,7 @@ TEST(LatticeFrame, IsServedByEveryInstructionSetWithLanesAndByTheOneThatWasChose
   EXPECT_FALSE(served.empty());
 }
 
-TEST(LatticeFrame, OnEmulatedLanesAFrameTakesTheDoubleWayToTheSamePromise) {
+TEST(LatticeFrame, OnEmulatedLanesAFrameUsesDoublesWithTheSamePromise) {
   const scene::TetMesh mesh = datasets::cube(4);
   const reference::Reference reference(mesh, camera(), size, function());
   int targets = 0;

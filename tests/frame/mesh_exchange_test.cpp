@@ -133,7 +133,7 @@ TEST(MeshExchange, EveryTetReachesItsOneOwnerWithItsBits) {
         }
 }
 
-TEST(MeshExchange, PartsDependOnTheMeshAndNotOnWhoReadIt) {
+TEST(MeshExchange, PartsDependOnTheMeshAndNotOnItsReaders) {
   const scene::TetMesh mesh = datasets::cube(6);
   for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random}) {
     const auto reference = exchange(mesh, Start::first_rank, 4, {0, 2, 3}, {kind, 9}, {});
@@ -174,7 +174,7 @@ TEST(MeshExchange, PartsAreBalanced) {
   }
 }
 
-TEST(MeshExchange, NothingIsSentWhereEverythingLiesRight) {
+TEST(MeshExchange, NothingIsSentWhereEverythingIsInPlace) {
   const scene::TetMesh mesh = datasets::cube(4);
   exchange::run_ranks(3, [&](Transport& transport) {
     MeshPart part = part_of(mesh, Start::slices, transport.rank(), 3, 1);

@@ -200,7 +200,7 @@ TEST(Peel, SurfacesEndTheLayersThatTheyFill) {
 }
 
 /// Nested opaque shells: each layer shows what the shells in front of it hide.
-TEST(Peel, WhatIsHiddenIsInALaterLayer) {
+TEST(Peel, HiddenPartsAreInLaterLayers) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::shells(4, 3, 1)));
   const TransferFunction opaque({{0, {0.2, 0.5, 0.9}, 1e4}});
   for (Settings settings : {exact(), Settings()}) {
@@ -250,7 +250,7 @@ TEST(Peel, ADeepPictureHasASampleALayer) {
   }
 }
 
-TEST(Peel, PointsAtOneDepthAreMovedApart) {
+TEST(Peel, PointsAtOneDepthAreSeparated) {
   DeepImage layers;
   layers.size = {1, 1};
   layers.begin = {0, 4};
@@ -313,7 +313,7 @@ std::string refusal(const Dataset& data, const Settings& settings, const FrameSe
   return "";
 }
 
-TEST(Peel, WhatCannotBeIsRefused) {
+TEST(Peel, RefusesImpossibleRequests) {
   const Dataset mesh = Dataset::of(datasets::arrays_of(datasets::cube(2))), volume = grid(Association::point, false);
   for (const Dataset& data : {mesh, volume}) {
     for (const double threshold : {0.0, 1.0, -1.0, 2.0, std::nan("")})

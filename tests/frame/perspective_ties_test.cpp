@@ -156,7 +156,7 @@ struct SightPlane {
   }
 };
 
-TEST(PerspectiveTies, BoxesWithASideInThePlaneOfEyeAndCentresAreTheLimitOfShiftedOnes) {
+TEST(PerspectiveTies, BoxesWithASideInARayPlaneAreTheLimitOfShiftedBoxes) {
   int decided = 0, scenes = 0;
   for (const View& view : views())
     for (const bool column : {true, false})
@@ -175,7 +175,7 @@ TEST(PerspectiveTies, BoxesWithASideInThePlaneOfEyeAndCentresAreTheLimitOfShifte
   EXPECT_GT(decided, 100);
 }
 
-TEST(PerspectiveTies, LatticesWithCellDataAreTheLimitOfShiftedOnes) {
+TEST(PerspectiveTies, LatticesWithCellDataAreTheLimitOfShiftedLattices) {
   int decided = 0, scenes = 0;
   for (const View& view : views())
     for (const bool column : {true, false}) {
@@ -190,7 +190,7 @@ TEST(PerspectiveTies, LatticesWithCellDataAreTheLimitOfShiftedOnes) {
   EXPECT_GT(decided, 100);
 }
 
-TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedOnes) {
+TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedLattices) {
   // All vertical and horizontal faces are in planes of the eye and centres, all edges along the view on rays of
   // centres.
   int decided = 0, scenes = 0;
@@ -207,7 +207,7 @@ TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedOnes) {
   EXPECT_GT(decided, 1000);
 }
 
-TEST(PerspectiveTies, MeshesRoundTheEyeAreTheLimitOfShiftedOnes) {
+TEST(PerspectiveTies, MeshesAroundTheEyeAreTheLimitOfShiftedMeshes) {
   // The eye is inside, in a plane of faces, on an edge, on a vertex; at the mesh's surface; with vertices in its plane
   // and behind it.
   int decided = 0, scenes = 0;

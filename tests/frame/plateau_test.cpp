@@ -196,7 +196,7 @@ RandomCase random_plateau(Random& random) {
   return c;
 }
 
-TEST(Plateau, RandomOnesKeepThePromise) { expect_random_cases_right(5, 100, random_plateau); }
+TEST(Plateau, RandomPlateausKeepThePromise) { expect_random_cases_right(5, 100, random_plateau); }
 
 }  // namespace
 }  // namespace tessera::frame::plateau_test

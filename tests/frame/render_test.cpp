@@ -231,7 +231,7 @@ TEST(Render, AMeshWithoutCellsIsABlankPicture) {
   for (const float z : image.depth) EXPECT_TRUE(std::isinf(z));
 }
 
-TEST(Render, DepthIsWhereTheFirstVisibleSampleLies) {
+TEST(Render, DepthIsThatOfTheFirstVisibleSample) {
   // The scalar is the height z; matter begins at z = 0.25, seen from above at z = 5.
   scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = mesh.positions[v].z;
@@ -244,7 +244,7 @@ TEST(Render, DepthIsWhereTheFirstVisibleSampleLies) {
   for (const float z : image.depth) EXPECT_NEAR(z, 4.75, 1e-6);  // float output
 }
 
-TEST(Render, ScalesAndOffsetsOfTheSceneDoNotShow) {
+TEST(Render, ScalesAndOffsetsOfTheSceneDoNotChangeTheImage) {
   const ImageSize size{40, 40};
   const scene::TetMesh mesh = datasets::cube(4, 0.2);
   const Image expected = Renderer(mesh, exact()).render(oblique(), size, six_knots());
@@ -285,7 +285,7 @@ TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
   EXPECT_LE(alive(1e9), 2 * alive(5));
 }
 
-TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
+TEST(Render, ScalarsRoundedEquallyAlongARayStayWithinTheBound) {
   // A field that is constant except at two corners, in the middle of pieces in which colour and extinction change as
   // fast as allowed: every segment has the same error.
   const ImageSize size{24, 24};
@@ -313,7 +313,7 @@ TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
     }
 }
 
-TEST(Render, RefusesWhatCannotBe) {
+TEST(Render, RefusesImpossibleSettings) {
   const scene::TetMesh mesh = datasets::cube(4, 0);
   Settings settings = exact();
   settings.memory_bytes = 1000;

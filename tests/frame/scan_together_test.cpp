@@ -74,7 +74,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
   }
 }
 
-TEST(ScanTogether, WhatOneRankCannotReadEndsTheRunForAllWithItsWords) {
+TEST(ScanTogether, AReadErrorOfOneRankEndsTheRunForAllWithItsMessage) {
   try {
     exchange::run_ranks(3, [&](exchange::Transport& transport) {
       const NoiseSource source(40);  // in the last rank's share

@@ -92,7 +92,7 @@ RandomCase random_sheet(Random& random) {
   return c;
 }
 
-TEST(Sheet, RandomOnesKeepThePromise) { expect_random_cases_right(5, 100, random_sheet); }
+TEST(Sheet, RandomSheetsKeepThePromise) { expect_random_cases_right(5, 100, random_sheet); }
 
 }  // namespace
 }  // namespace tessera::frame::sheet_test

@@ -271,7 +271,7 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   }
 }
 
-TEST(SortLast, TheSameJobGivesTheSameBitsEitherWayItSends) {
+TEST(SortLast, TheSameJobGivesTheSameBitsWithEitherExchange) {
   Case c = ball(6);
   const auto first = render(c, {60, 50});
   c.render.threads = 3;

@@ -48,14 +48,14 @@ void expect_same(const std::vector<double>& ours, const std::vector<double>& the
   for (std::size_t rank = 0; rank < ours.size(); ++rank) EXPECT_NEAR(ours[rank], theirs[rank], 1e-9) << rank;
 }
 
-TEST(SplitByTimes, ARankGetsLessByWhatItDoesBesideItsTiles) {
+TEST(SplitByTimes, ARankGetsLessForItsOtherWork) {
   // 100 ms of tiles and 24 of other work are 62 for each: 42 and 58 of tiles.
   const std::vector<double> weights = weights_of(20, 4);
   ASSERT_EQ(weights.size(), 2u);
   EXPECT_NEAR(weights[0] / weights[1], 42.0 / 58.0, 1e-9);
 }
 
-TEST(SplitByTimes, TheFirstPicturesDoNotCountOnceOthersAreThere) {
+TEST(SplitByTimes, TheFirstFramesDoNotCountOnceThereAreOthers) {
   SplitByTimes splits;
   splits.learn(job, box, times(10, 10));  // nothing is gathered yet
   splits.learn(job, box, times(20, 10));
@@ -64,7 +64,7 @@ TEST(SplitByTimes, TheFirstPicturesDoNotCountOnceOthersAreThere) {
   expect_same(splits.weights(), weights_of(24, 4));
 }
 
-TEST(SplitByTimes, OnePictureOfManyChangesLittle) {
+TEST(SplitByTimes, OneFrameOfManyChangesLittle) {
   SplitByTimes splits;
   for (int picture = 0; picture < 20; ++picture) splits.learn(job, box, times(20, 4));
   splits.learn(job, box, times(40, 4));
@@ -89,7 +89,7 @@ TEST(SplitByTimes, ASplitGivesRanksTheSameTime) {
 
 // The prediction moves with the box as the eye moves past it; the tile times here stay fixed in the image. So each step
 // has the same prediction error: the split of one image does not reveal it, that of many is even.
-TEST(SplitByTimes, WhatIsMissedFromPictureToPictureAlikeIsLearned) {
+TEST(SplitByTimes, ErrorsThatRepeatFromFrameToFrameAreLearned) {
   constexpr scene::ImageSize size{512, 512};
   constexpr int ranks = 4;
   const auto took = [](const scene::PixelRect& r) {  // microseconds: increasing to the right

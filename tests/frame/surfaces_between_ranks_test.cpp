@@ -133,7 +133,7 @@ std::shared_ptr<TriangleMesh> skin_of(const scene::TetMesh& mesh) {
   return skin;
 }
 
-TEST(SurfacesBetweenRanks, ThatCoincideAreInOneProcesssOrder) {
+TEST(SurfacesBetweenRanks, ThatCoincideHaveTheOrderOfOneProcess) {
   const scene::TransferFunction function({{0, {0.2, 0.4, 0.9}, 0.5}, {1, {1, 0.4, 0.2}, 0.5}});
   FrameJob job{{}, {31, 31}, 0};
   for (const bool regular : {true, false}) {
@@ -155,7 +155,7 @@ TEST(SurfacesBetweenRanks, ThatCoincideAreInOneProcesssOrder) {
   }
 }
 
-TEST(RunsBetweenRanks, SayWhereCellsOverlap) {
+TEST(RunsBetweenRanks, ReportWhereCellsOverlap) {
   const scene::TransferFunction function({{0, {0.2, 0.4, 0.9}, 0.5}, {1, {1, 0.4, 0.2}, 0.5}});
   const auto cube_at = [](double x) {
     scene::TetMesh mesh = datasets::cube(3, 0.2);

@@ -61,7 +61,7 @@ TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue)
     }
 }
 
-TEST(IsoSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
+TEST(IsoSurface, IsBetweenTheDataInFrontAndBehind) {
   const scene::ImageSize size{8, 8};
   Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1, 0, 0), 1}};
@@ -100,7 +100,7 @@ TEST(IsoSurface, AtTheValueOfVerticesOfFacesAndOfWholeCellsIsMetOnce) {
       }
 }
 
-TEST(IsoSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
+TEST(IsoSurface, OutsideTheFieldsRangeOrOnTheBoundaryIsEmpty) {
   Surfaces surfaces;
   surfaces.iso = {{-0.1, {}, 1}, {1.1, {}, 1}, {0, {}, 1}};
   const scene::TetMesh mesh = ramp(0);
@@ -176,7 +176,7 @@ RandomCase random_surface_case(Random& random) {
   return c;
 }
 
-TEST(IsoSurface, RandomOnesKeepThePromise) { expect_random_cases_right(7, 200, random_surface_case); }
+TEST(IsoSurface, RandomSurfacesKeepThePromise) { expect_random_cases_right(7, 200, random_surface_case); }
 
 TEST(IsoSurface, ManyInACellKeepThePromiseOnEveryInstructionSet) {
   const scene::TetMesh mesh = datasets::cube(3, 0.2);

@@ -67,7 +67,7 @@ class VolumeLists : public testing::TestWithParam<Way> {};
 INSTANTIATE_TEST_SUITE_P(Ways, VolumeLists, testing::Values(Way::first, Way::last),
                          [](const auto& way) { return way.param == Way::first ? "SortFirst" : "SortLast"; });
 
-TEST_P(VolumeLists, GiveTheBitsOfPicturesOneByOneInOrderWithEveryPixelToldOnce) {
+TEST_P(VolumeLists, GiveTheBitsOfSeparateImagesInOrderAndReportEveryPixelOnce) {
   const auto source = waves();
   const std::vector<VolumeJob> jobs = turn();
   for (const int ranks : {1, 2, 5}) {
@@ -144,7 +144,7 @@ struct OfCaller : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-TEST_P(VolumeLists, WhatACallbackThrowsIsTheCallersAndTheOthersGoOn) {
+TEST_P(VolumeLists, ACallbacksExceptionReachesTheCallerAndTheOthersGoOn) {
   const auto source = waves();
   const std::vector<VolumeJob> jobs = turn();
   for (const bool by_tile : {false, true})

@@ -19,7 +19,7 @@
 namespace tessera::frame::worker_threads_test {
 namespace {
 
-TEST(WorkerThreads, RunAllTasksAndHandOnWhatTheyThrow) {
+TEST(WorkerThreads, RunAllTasksAndForwardTheirExceptions) {
   std::atomic<int> done = 0, failed = 0;
   {
     WorkerThreads workers(3, [&](const std::exception&) { ++failed; });
@@ -57,7 +57,7 @@ void judge(const Start& start) {
   std::_Exit(0);
 }
 
-TEST(WorkerThreadsDeathTest, ThatTheSystemDoesNotGiveAreAnErrorWithARemedy) {
+TEST(WorkerThreadsDeathTest, RefusedByTheSystemAreAnErrorWithARemedy) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(judge([] { const WorkerThreads workers(64, [](const std::exception&) {}); }),
               ::testing::ExitedWithCode(7), "");
@@ -65,7 +65,7 @@ TEST(WorkerThreadsDeathTest, ThatTheSystemDoesNotGiveAreAnErrorWithARemedy) {
 
 #endif
 
-TEST(StartThread, KnowsWhatLibrariesThrowWhereThereAreNoMoreThreads) {
+TEST(StartThread, RecognizesExceptionsOfLibrariesThatRunOutOfThreads) {
   const std::system_error of_std(std::make_error_code(std::errc::resource_unavailable_try_again));
   const std::runtime_error of_tbb("pthread_create has failed: Resource temporarily unavailable");
   EXPECT_TRUE(scene::thread_fault(of_std).has_value());

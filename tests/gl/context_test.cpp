@@ -92,7 +92,7 @@ TEST(Egl, ComputesOnADeviceWithoutASurface) {
   expect_doubled(*context);
 }
 
-TEST(Egl, SoftwareIsNoAnswerWhereHardwareIsAsked) {
+TEST(Egl, RefusesSoftwareWhenHardwareIsRequested) {
   EglDevice hardware;
   hardware.hardware_only = true;
   try {
@@ -103,7 +103,7 @@ TEST(Egl, SoftwareIsNoAnswerWhereHardwareIsAsked) {
   }
 }
 
-TEST(Egl, ADeviceThatIsNotThereIsRefused) {
+TEST(Egl, RefusesAMissingDevice) {
   EglDevice none;
   none.number = 1000;
   const auto error = error_of([&] { open_context(Platform::egl, none); });
@@ -111,7 +111,7 @@ TEST(Egl, ADeviceThatIsNotThereIsRefused) {
   EXPECT_TRUE(words.starts_with("`egl_device` 1000: ") || words.starts_with("EGL: ")) << words;
 }
 
-TEST(Library, OneThatIsNotThereIsNamed) {
+TEST(Library, NamesAMissingLibrary) {
   const auto error = error_of([] { Library("libnothing.so.0", "Nothing", "libnothing0"); });
   EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
   EXPECT_STREQ(error.what(), "Nothing: libnothing.so.0 cannot be opened; install libnothing0 or use `backend` cpu");
@@ -150,7 +150,7 @@ TEST(Context, ALostContextAndSpentMemoryAreOneLine) {
   context.check("sorting");
 }
 
-TEST(Context, WhatADeviceRefusesIsSaid) {
+TEST(Context, ReportsWhatADeviceRefuses) {
   TESSERA_OSMESA_OR_SKIP(context);
   context.gl().Enable(0xdead);
   const auto error = error_of([&] { context.check("testing"); });

@@ -269,7 +269,7 @@ TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
   }
 }
 
-TEST(SegmentIntegrator, PreintegratedCutsOffWhatLiesOutsideTheKnots) {
+TEST(SegmentIntegrator, PreintegratedCutsOffValuesOutsideTheKnots) {
   const TransferFunction f({{0, {0.1, 0.2, 0.9}, 2}, {1, {0.9, 0.5, 0.1}, 2}});
   const TransferFunction step({{0.5, {1, 0, 0}, 3}, {0.5, {0, 1, 0}, 1}}), one({{0.5, {1, 0, 0}, 3}});
   const std::vector<Segment> segments{{1, -5, 6},  {1, 6, -5},    {2, -3, -1},    {0.5, 4, 4},    {0.7, -2, -2},
@@ -295,7 +295,7 @@ TEST(SegmentIntegrator, PartialErrsByItsTableOnly) {
   }
 }
 
-TEST(PsiTable, ErrsAsItsHeaderSays) {
+TEST(PsiTable, KeepsItsDocumentedError) {
   // Light of a white segment whose extinction is its scalar, compared with a blue one's: red comes only from 1 - M.
   std::mt19937 random(53);
   for (const auto& [deepest, bound] : {std::pair{10.0, 1e-5}, {1e3, 2e-2}, {1e6, 2e-2}}) {

@@ -78,7 +78,7 @@ TEST(ClearIntervals, EndsAreThoseOfRoundedInterpolation) {
   expect_same_as_visible(scene::TransferFunction({{-1e300, {0, 0, 0}, 0}, {1e300, {1, 1, 1}, 1}}), random);
 }
 
-TEST(ClearIntervals, HoldNoBoundaryTogetherWithWhatIsBelowIt) {
+TEST(ClearIntervals, ExcludeABoundaryFromTheIntervalBelowIt) {
   const scene::TransferFunction clear({{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}});
   const std::vector<double> boundaries{-1, 0.25, 0.25, 1};
   const ClearIntervals parted(clear, false, boundaries);

@@ -27,7 +27,7 @@ struct WholeVertex {
   }
 };
 
-TEST(EdgeSign, AgreesWithIntegersOnAndBesideTheEdgeBeforeBesideAndBehindTheEye) {
+TEST(EdgeSign, AgreesWithIntegersOnAndNearTheEdgeAllAroundTheEye) {
   std::mt19937_64 random(11);
   int zeros = 0, beside = 0;
   for (int trial = 0; trial < 40000; ++trial) {
@@ -81,7 +81,7 @@ TEST(EdgeSign, SeesOneUnitInTheLastPlace) {
             edge_sign(at(0, 0), at(0, 9), 3.5, 8.5, orthographic));
 }
 
-TEST(EdgeSign, PerspectiveNoiseIsNoSide) {
+TEST(EdgeSign, PerspectiveNoiseDoesNotDecideASide) {
   for (const double noise : {0x1p-52, 1e-13, 1e-10}) {
     EXPECT_EQ(edge_sign(at(3.5 * (1 - noise), 0, 0.3), at(3.5, 9, 7), 3.5, 8.5, perspective),
               edge_sign(at(3.5, 0), at(3.5, 9), 3.5, 8.5, orthographic));

@@ -188,7 +188,7 @@ TEST_P(GlRasterizerOn, LeavesOutCellsBehindTheEyeAndAcrossTheClippingRange) {
     for (const auto& corner : record.corner) EXPECT_TRUE(corner.depth >= 5.2 && corner.depth <= 6.1);
 }
 
-TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
+TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
   const int n = 8;
   const Scene scene(datasets::cube(n, 0), aligned(n, 24), {24, 24});
   expect_like_planes(*context_, scene);
@@ -298,7 +298,7 @@ std::array<std::int64_t, 2> beside(std::int64_t m, std::int64_t n) {
 }
 
 /// The smallest nonzero E, 2^-64: in double arithmetic it becomes zero or, if a product is fused, anything.
-TEST_P(GlRasterizerOn, EdgesThatPassCentresByLessThanDoublesTellAreDecidedExactly) {
+TEST_P(GlRasterizerOn, EdgesNearerToCentresThanDoublesResolveAreDecidedExactly) {
   std::mt19937_64 random(3);
   scene::TetMesh mesh;
   const auto add = [&](double x, double y) {

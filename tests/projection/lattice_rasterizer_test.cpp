@@ -161,7 +161,7 @@ TEST(LatticeRasterizer, HitsTheCellsOfDoublePrecisionInEveryKindOfView) {
   });
 }
 
-TEST(LatticeRasterizer, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
+TEST(LatticeRasterizer, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
   const scene::TetMesh mesh = datasets::cube(8, 0);
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);

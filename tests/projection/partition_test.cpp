@@ -67,7 +67,7 @@ TEST(Curve, VisitsEveryCellOfAGridOnceInStepsToANeighbour) {
   }
 }
 
-TEST(Curve, ExtremesHaveAPlace) {
+TEST(Curve, ExtremeCoordinatesHaveKeys) {
   EXPECT_EQ(curve_place({3, 4, 5}, {glm::dvec3(3, 4, 5), glm::dvec3(3, 4, 5)}), 0u);
   EXPECT_EQ(curve_place({0.5, 0.5, 0.5}, scene::Box{}), 0u);
   EXPECT_LT(curve_place({9, 9, 9}, unit_box), 1ull << 63);
@@ -109,7 +109,7 @@ void expect_balanced(const std::vector<CurveKey>& keys, int parts, int most_roun
   for (const std::uint64_t s : size) EXPECT_LE(std::abs(static_cast<double>(s) - even), std::max(0.01 * even, 1.0));
 }
 
-TEST(Curve, PartsAreBalancedWhoeverHoldsTheTets) {
+TEST(Curve, PartsAreBalancedForAnyDistributionOfTets) {
   for (const scene::TetMesh& mesh : {datasets::cube(12), datasets::graded(8, 1e12), datasets::thin_stack(500)}) {
     const auto keys = curve_keys(mesh, {}, scene::bounds(mesh));
     for (const int parts : {1, 2, 3, 8, 61}) expect_balanced(keys, parts, 15);

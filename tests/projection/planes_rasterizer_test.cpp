@@ -106,7 +106,7 @@ TEST(PlanesRasterizer, HitsTheReferencesCellsInEveryKindOfView) {
   });
 }
 
-TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
+TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
   const int n = 8;
   const scene::TetMesh mesh = datasets::cube(n, 0);
   const scene::ImageSize size{24, 24};

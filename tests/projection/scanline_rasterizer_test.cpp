@@ -115,7 +115,7 @@ double closest_edge(const Frame& frame, scene::ImageSize size) {
   return closest;
 }
 
-TEST(ScanlineRasterizer, ACornerOfACubeIsWhatPaperAndPencilSay) {
+TEST(ScanlineRasterizer, ACornerOfACubeMatchesTheHandCalculation) {
   // Corners at 0, x, y, z: along z from height 5, a ray enters at z = 1 - x - y and leaves at z = 0.
   const scene::TetMesh mesh = datasets::single_tet();
   const scene::ImageSize size{64, 64};
@@ -280,7 +280,7 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
   }
 }
 
-TEST(ScanlineRasterizer, SaysWhatFloatsDoNotHold) {
+TEST(ScanlineRasterizer, ReportsScenesThatFloatsDoNotHold) {
   const scene::TetMesh mesh = datasets::cube(2, 0);
   const auto fits = [](scene::TetMesh m, double scale) {
     m = datasets::transformed(m, scale, glm::dvec3(0));

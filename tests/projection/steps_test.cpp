@@ -74,7 +74,7 @@ TEST(SplitRasterizer, CutsSegmentsWhereTheyCrossStepsAndTilesThemWithThePieces) 
   EXPECT_GT(cuts, 100u);
 }
 
-TEST(SplitRasterizer, KeepsWhatIsBelowAStepByADoublesLastPlaceBelowIt) {
+TEST(SplitRasterizer, KeepsValuesJustBelowAStepBelowIt) {
   scene::TetMesh mesh = datasets::cube(2, 0.2);
   std::mt19937_64 random(5);
   for (double& s : mesh.scalars) s = random() % 2 == 0 ? 1 : below(1);

@@ -135,7 +135,7 @@ TEST(Amr, BlocksThatCutThroughCoarserCellsLeaveTheRestOfThem) {
   }
 }
 
-TEST(Amr, WeightsOfLargestEntropyAreAboveZeroAndHaveTheMeanAskedFor) {
+TEST(Amr, MaximumEntropyWeightsArePositiveWithTheRequestedMean) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> length(0.01, 4);
   for (int n = 0; n < 1000; ++n) {
@@ -158,7 +158,7 @@ TEST(Amr, WeightsOfLargestEntropyAreAboveZeroAndHaveTheMeanAskedFor) {
   }
 }
 
-TEST(Amr, WhatDoesNotNestIsToldWithTheBlockAtFault) {
+TEST(Amr, ReportsTheBlockThatDoesNotNest) {
   const test::TemporaryFolder folder;
   const auto fault = [&](std::vector<Block> blocks) {
     return message_of([&] { read_mesh(write_vth(folder, {std::move(blocks)}, false, linear)); });

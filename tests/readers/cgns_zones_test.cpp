@@ -581,7 +581,7 @@ TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
   test::expect_bad_input([&] { read(folder / "c.cgns"); }, {"c.cgns: base/zone", "'some'", "index 5 of 1 to 4"});
 }
 
-TEST(CgnsZones, FieldsOfOneNameInSeveralSolutionsAreBothThere) {
+TEST(CgnsZones, ReadsFieldsOfOneNameFromSeveralSolutions) {
   const test::TemporaryFolder folder;
   const Row row(3);
   CgnsWriter file(folder / "a.cgns");
@@ -631,7 +631,7 @@ TEST(CgnsZones, CylinderCoordinatesAreTurnedToXyz) {
   test::expect_bad_input([&] { read_mesh(folder / "b.cgns"); }, {"base/zone", "2 of CoordinateR", "not read"});
 }
 
-TEST(CgnsZones, WhatIsNotReadIsNamed) {
+TEST(CgnsZones, NamesWhatIsNotRead) {
   const test::TemporaryFolder folder;
   const Row row(2);
   CgnsWriter file(folder / "a.cgns");

@@ -68,7 +68,7 @@ std::vector<double> wanted(int places) {
   return values;
 }
 
-TEST_F(DicomFrameFiles, LieWhereEachSaysWhateverTheirOrder) {
+TEST_F(DicomFrameFiles, ArePlacedByTheirPositionsInAnyOrder) {
   for (const std::vector<int>& order : {std::vector{0, 1, 2, 3}, std::vector{3, 2, 1, 0}, std::vector{2, 0, 3, 1}}) {
     const VolumeFile volume = open(frames_at(order));
     const scene::GridGeometry& g = volume.source->geometry();
@@ -139,7 +139,7 @@ TEST_F(DicomFrameFiles, AtSeveralTimesHaveTheseInSecondsFromTheFirst) {
   EXPECT_TRUE(times({index(1), index(2), index(3)}).empty());
 }
 
-TEST_F(DicomFrameFiles, WithoutPlacesAreSpacedByWhatTheFileSaysAndANoteSaysSo) {
+TEST_F(DicomFrameFiles, WithoutPositionsUseTheFilesSpacingWithANote) {
   DicomFrames file;
   file.storage = "1.2.840.10008.5.1.4.1.1.7.2", file.modality = "OT";
   file.frames = 3, file.samples = samples_of({0, 1, 2});
@@ -155,7 +155,7 @@ TEST_F(DicomFrameFiles, WithoutPlacesAreSpacedByWhatTheFileSaysAndANoteSaysSo) {
   EXPECT_TRUE(has_note(open(file), "2.5 mm apart as its spacing between slices"));
 }
 
-TEST_F(DicomFrameFiles, OfADoseLieAtTheirOffsetsAndAreScaled) {
+TEST_F(DicomFrameFiles, OfADoseArePlacedAtTheirOffsetsAndScaled) {
   DicomFrames file;
   file.storage = "1.2.840.10008.5.1.4.1.1.481.2", file.modality = "RTDOSE";
   file.above = dicom_element(0x20, 0x32, "DS", "10\\-20\\5") + dicom_element(0x20, 0x37, "DS", upright);
@@ -180,7 +180,7 @@ TEST_F(DicomFrameFiles, OfADoseLieAtTheirOffsetsAndAreScaled) {
   EXPECT_TRUE(with("0\\3\\9", {0, 1, 2}).source->geometry().rectilinear());
 }
 
-TEST_F(DicomFrameFiles, InSeveralDirectionsOrSpacingsAreThoseOfOneAndOfOnePlaceAreNoVolume) {
+TEST_F(DicomFrameFiles, ShowOneOfSeveralDirectionsAndRefuseASinglePosition) {
   DicomFrames file = frames_at({0, 1, 2, 0});
   file.each.back() = test::dicom_position({0, 0, 0}) + test::dicom_orientation("0\\1\\0\\0\\0\\1");
   const VolumeFile most = open(file);

@@ -157,7 +157,7 @@ TEST_F(Dicom, WithoutPlacesAreAsFarApartAsTheyAreThick) {
   EXPECT_TRUE(has_note(volume, "by their numbers, 2 mm apart"));
 }
 
-TEST_F(Dicom, OfOtherSpacingsAreStacksOfTheirOwn) {
+TEST_F(Dicom, OtherSpacingsAreSeparateStacks) {
   for (int k = 0; k < 4; ++k)
     write(fmt::format("{}.dcm", k),
           {.z = 1.0 * k, .number = k, .spacing = k == 0 ? "0.75\\0.6" : "0.75\\0.5", .samples = twelve(k)});
@@ -167,14 +167,14 @@ TEST_F(Dicom, OfOtherSpacingsAreStacksOfTheirOwn) {
   EXPECT_TRUE(has_note(volume, "slices of 2 series, sizes, spacings or directions; the 3 of one are shown"));
 }
 
-TEST_F(Dicom, MosaicsAreNoSlices) {
+TEST_F(Dicom, RefusesMosaics) {
   for (int k = 0; k < 2; ++k)
     write(fmt::format("{}.dcm", k),
           {.z = 1.0 * k, .number = k, .image_type = "ORIGINAL\\PRIMARY\\M\\MOSAIC", .samples = twelve(k)});
   expect_no_volume(folder.path(), "mosaic), which is not read; convert it: dcm2niix");
 }
 
-TEST_F(Dicom, GapsAreToldAndKeptAndTiltedStacksAreSheared) {
+TEST_F(Dicom, ReportsAndKeepsGapsAndShearsTiltedStacks) {
   const double z[] = {0, 2, 6, 8};
   for (int k = 0; k < 4; ++k) write(fmt::format("{}.dcm", k), {.z = z[k], .number = k, .samples = twelve(k)});
   const VolumeFile gap = open_volume(folder.path());
@@ -217,7 +217,7 @@ TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps) {
   expect_no_volume(folder.path(), "no time step 3, the series has 3", {.time_step = 3});
 }
 
-TEST_F(Dicom, OfSeveralSeriesTheLargestOrTheNamedOneIsShown) {
+TEST_F(Dicom, ShowsTheLargestOrTheNamedSeries) {
   for (int k = 0; k < 5; ++k)
     write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .series = k < 3 ? "1.1" : "1.2", .samples = twelve(k)});
   write("scout.dcm", {.series = "1.1", .columns = 3, .rows = 4, .samples = twelve(50)});

@@ -138,7 +138,7 @@ TEST_F(EnsightValues, WholeFilesAreRead) {
   }
 }
 
-TEST_F(EnsightValues, OnesThatEndInsideTheirNumbersAreLeftOutByName) {
+TEST_F(EnsightValues, OmitsFilesThatEndInsideNumbersByName) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : layouts) {
     SCOPED_TRACE(static_cast<int>(layout));
@@ -162,7 +162,7 @@ TEST_F(EnsightValues, OnesThatEndInsideTheirNumbersAreLeftOutByName) {
   }
 }
 
-TEST_F(EnsightValues, OnesThatEndInsideTheirLastNumberAreLeftOutByName) {
+TEST_F(EnsightValues, OmitsFilesThatEndInsideTheLastNumberByName) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : {Layout::gold_text, Layout::six_text})
     for (const auto& [name, variable] : {std::pair("a.f", "f"), std::pair("a.v", "v"), std::pair("a.g", "g")})
@@ -191,7 +191,7 @@ TEST_F(EnsightValues, NumbersNeedNoLineBreakAfterThem) {
   EXPECT_EQ(read("f").mesh.scalars.back(), 4);
 }
 
-TEST_F(EnsightValues, OnesThatEndBeforeOrBetweenTheirNumbersAreLeftOutByName) {
+TEST_F(EnsightValues, OmitsFilesThatEndBeforeOrBetweenNumbersByName) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : layouts) {
     SCOPED_TRACE(static_cast<int>(layout));
@@ -273,7 +273,7 @@ TEST_F(EnsightValues, PartialAndUndefinedValuesCount) {
   }
 }
 
-TEST_F(EnsightValues, WhatGoldFilesMayLeaveOutIsNotMissed) {
+TEST_F(EnsightValues, OptionalPartsOfGoldFilesMayBeAbsent) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
     SCOPED_TRACE(static_cast<int>(layout));
@@ -409,7 +409,7 @@ TEST_F(EnsightSteps, AFileSetMayHaveSeveralFiles) {
   }
 }
 
-TEST_F(EnsightSteps, OnesThatAreNotThereAreLeftOutByName) {
+TEST_F(EnsightSteps, OmitsMissingAndTruncatedStepsByName) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : layouts) {
     SCOPED_TRACE(static_cast<int>(layout));

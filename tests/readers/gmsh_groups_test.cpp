@@ -130,12 +130,12 @@ TEST_F(GmshGroups, AreTheElementsOwnWhereOneEntityHasAll) {
   EXPECT_EQ(std::max(mesh.mesh.scalars[0], mesh.mesh.scalars[1]), 2);
 }
 
-TEST_F(GmshGroups, WhatAGroupItselfListsTwiceStaysTwice) {
+TEST_F(GmshGroups, CellsListedTwiceByAGroupStayTwice) {
   const std::string text = msh2({tet(1, "2 1 1", corner_nodes), tet(2, "2 1 1", corner_nodes)});
   EXPECT_EQ(read(text).counts.cells_read, 2u);
 }
 
-TEST_F(GmshGroups, CellsOfNoneAreThere) {
+TEST_F(GmshGroups, CellsWithoutAGroupAreRead) {
   const std::string text = msh2({tet(1, "2 1 1", corner_nodes), tet(2, "2 0 2", middle_nodes)});
   const cells::MeshFile mesh = read(text);
   EXPECT_NEAR(testing::volume(mesh.mesh), corner + middle, 1e-12);

@@ -365,7 +365,7 @@ TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);
 }
 
-TEST_F(Gmsh, WhatIsCutOffOrNotThereIsSaid) {
+TEST_F(Gmsh, ReportsTruncatedAndMissingFiles) {
   const std::string whole = msh2(node_data("f", 0, 1));
   for (std::size_t length = 40; length + 14 < whole.size(); length += 97)
     test::expect_bad_input([&] { read_mesh(folder.write("a.msh", whole.substr(0, length))); }, {"a.msh"});

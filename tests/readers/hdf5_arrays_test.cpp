@@ -175,7 +175,7 @@ TEST(Hdf5Arrays, MayHaveALastDimensionOfOne) {
   }
 }
 
-TEST(Hdf5Arrays, MayLieBehindABlockOfTheUsers) {
+TEST(Hdf5Arrays, MayFollowAUserBlock) {
   const test::TemporaryFolder folder;
   for (const hsize_t block : {512, 1024, 2048, 4096, 65536})
     for (const char* name : {"a.h5", "a", "a.nc", "a.e", "a.mnc", "a.vtkhdf", "a.cgns"}) {
@@ -189,7 +189,7 @@ TEST(Hdf5Arrays, MayLieBehindABlockOfTheUsers) {
     }
 }
 
-TEST(Hdf5Arrays, MissingOnesAreBlank) {
+TEST(Hdf5Arrays, MissingValuesAreBlank) {
   const test::TemporaryFolder folder;
   {
     const Hdf5Writer w(folder / "a.h5");
@@ -321,7 +321,7 @@ TEST(VtkHdfImages, HaveTimeSteps) {
   EXPECT_EQ(open_volume(folder / "t.vtkhdf").time_step.times, (std::vector<double>{0, 0.5, 1}));
 }
 
-TEST(VtkHdfImages, DamagedOnesAreRefused) {
+TEST(VtkHdfImages, RefusesDamagedFiles) {
   const test::TemporaryFolder folder;
   {
     const Hdf5Writer w(folder / "d.vtkhdf");

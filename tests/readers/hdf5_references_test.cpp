@@ -69,7 +69,7 @@ class Hdf5References : public ::testing::Test {
   std::filesystem::path in;
 };
 
-TEST_F(Hdf5References, BesideTheFileAreFollowed) {
+TEST_F(Hdf5References, ToNeighbouringFilesAreFollowed) {
   EXPECT_NEAR(testing::volume(read_mesh(linked("a.vtkhdf", "tets.vtkhdf")).mesh), 4.0 / 6, 1e-12);
   ReadOptions options;
   options.field = "g";
@@ -79,7 +79,7 @@ TEST_F(Hdf5References, BesideTheFileAreFollowed) {
   EXPECT_EQ(own.mesh.scalars, read.mesh.scalars);
 }
 
-TEST_F(Hdf5References, ToOtherFoldersAreRefused) {
+TEST_F(Hdf5References, ToOtherDirectoriesAreRefused) {
   const std::string outside = (folder / "outside.vtkhdf").string();
   for (const std::string& to : {outside, std::string("../outside.vtkhdf")}) {
     expect_refused(linked("a.vtkhdf", to), "leads to 'outside.vtkhdf', which is neither next to it nor below");
@@ -123,7 +123,7 @@ TEST_F(Hdf5References, ByAPatternOfNamesAreRefused) {
   expect_refused(in / "p0.vtkhdf", "given by a pattern");
 }
 
-TEST_F(Hdf5References, ToWhatIsNotThereAreTheLibrarysToAnswer) {
+TEST_F(Hdf5References, ToMissingFilesAreLeftToTheLibrary) {
   expect_refused(linked("a.vtkhdf", "gone.vtkhdf"), "it holds no cells");
   EXPECT_EQ(read_mesh(with_virtual_field("v.vtkhdf", "gone.vtkhdf", "/f")).mesh.scalars.size(), 5u);
 }

@@ -123,7 +123,7 @@ TEST(Helper, IsEndedWhereItWaitsForAPipe) {
   EXPECT_EQ(helper->process(), -1) << "its process is left";
 }
 
-TEST(Helper, TellsHowFarItIs) {
+TEST(Helper, ReportsProgress) {
   const test::TemporaryFolder folder;
   std::string text = testing::vtu_text(testing::mixed_mesh(60, 1, false));
   const std::string element = "<UnstructuredGrid";
@@ -199,7 +199,7 @@ TEST(Helper, FilesAreReadByManyThreadsAtOnce) {
     });
 }
 
-TEST(Helper, ADescriptionComesBackAsItWas) {
+TEST(Helper, ADescriptionIsReturnedUnchanged) {
   ForeignContents contents;
   contents.format = "f\xff";  // names need not be UTF-8
   contents.notes = {"one", "two"};

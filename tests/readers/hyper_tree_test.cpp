@@ -153,7 +153,7 @@ TEST(HyperTrees, PiecesAreOneGridAndGhostsAreLeftOut) {
             std::string::npos);
 }
 
-TEST(HyperTrees, WhatIsNotReadIsToldInOneLine) {
+TEST(HyperTrees, ReportsUnsupportedContentInOneLine) {
   const test::TemporaryFolder folder;
   const TreeScene scene = deep(even, 2);
   const std::string good = htg_text(scene, linear);

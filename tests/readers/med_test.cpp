@@ -126,7 +126,7 @@ TEST(Med, CellsAndFieldsAreRead) {
   test::expect_bad_input([&] { read_mesh(folder / "bar.med", options); }, {"bar.med: there is no time step 2"});
 }
 
-TEST(Med, WhatAFieldHasNoValueForIsBlank) {
+TEST(Med, CellsWithoutAValueAreBlank) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
   ReadOptions options;
@@ -272,7 +272,7 @@ TEST(Med, VersionTwoIsRead) {
   EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square of 4 under a height of 3
 }
 
-TEST(Med, DamagedOnesAreRefusedInOneLine) {
+TEST(Med, RefusesDamagedFilesInOneLine) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
   const std::string whole = test::contents(folder / "bar.med");

@@ -198,7 +198,7 @@ TEST_F(Messages, NanInTextOfGridsAndUcdIsANumber) {
   EXPECT_EQ(mesh.counts.cells_read, 2u);
 }
 
-TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedForWhatTheyAre) {
+TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedWithTheReason) {
   const auto list = write("a.vtm",
                           "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
                           "name=\"skin\" file=\"a.vtp\"/></vtkMultiBlockDataSet></VTKFile>");
@@ -236,7 +236,7 @@ TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {
   EXPECT_EQ(warnings.front().find("all 2 hexahedra are tangled"), 0u) << warnings.front();
 }
 
-TEST_F(Messages, OfVtkComeWithoutItsDebuggingAndCallDamagedOnlyWhatIs) {
+TEST_F(Messages, OfVtkAreCleanedAndReportDamageOnlyIfThereIsSome) {
   TESSERA_VTK_OR_SKIP();
   const std::string whole = legacy("9");
   const std::string cut = message_of([&] { read_mesh(write("a.vtk", whole.substr(0, 150))); });
@@ -249,7 +249,7 @@ TEST_F(Messages, OfVtkComeWithoutItsDebuggingAndCallDamagedOnlyWhatIs) {
     EXPECT_EQ(unknown.substr(unknown.find(": ")).find(words), std::string::npos) << unknown;
 }
 
-TEST_F(Messages, WordsThatLegacyFilesDoNotHaveThereAreNamedWithTheirLine) {
+TEST_F(Messages, NameUnexpectedWordsOfLegacyFilesWithTheirLine) {
   TESSERA_VTK_OR_SKIP();
   const struct {
     std::string old, other, words;

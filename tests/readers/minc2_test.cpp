@@ -67,7 +67,7 @@ void write_minc2(const std::string& name, misize_t steps) {
   ASSERT_EQ(miclose_volume(volume), MI_NOERROR);
 }
 
-TEST(Minc2, RealValuesLieWhereTheDirectionCosinesPutThem) {
+TEST(Minc2, RealValuesArePlacedByTheDirectionCosines) {
   const test::TemporaryFolder folder;
   write_minc2((folder / "head.mnc").string(), 1);
   ASSERT_TRUE(is_volume(folder / "head.mnc"));
@@ -209,7 +209,7 @@ TEST(Minc2, VectorsHaveComponents) {
   }
 }
 
-TEST(Minc2, DamagedOnesAreRefusedInOneLine) {
+TEST(Minc2, RefusesDamagedFilesInOneLine) {
   const test::TemporaryFolder folder;
   write_minc2((folder / "head.mnc").string(), 1);
   const std::string whole = test::contents(folder / "head.mnc");

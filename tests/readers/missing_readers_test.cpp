@@ -125,7 +125,7 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
   EXPECT_GT(read_by_programs, 25);
 }
 
-TEST_F(MissingReaders, WhatIsRareInAFormatOfOurOwnReaderNamesTheOther) {
+TEST_F(MissingReaders, RareContentOfOwnFormatsNamesTheOtherReader) {
   const auto file = folder.write("a.pvti", vtk_xml("PImageData"));
   const test::Fault fault = test::fault_of([&] { open_volume(file); });
   EXPECT_EQ(fault.message,

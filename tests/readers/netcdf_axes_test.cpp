@@ -67,7 +67,7 @@ const AxisOfFile longitude{"lon", {{"units", "degrees_east"}}, {10, 20, 30, 40, 
 const AxisOfFile latitude{"lat", {{"units", "degrees_north"}}, {-30, 0, 30, 60}};
 const AxisOfFile height{"h", {{"units", "m"}, {"positive", "up"}}, {100, 500, 1000}};
 
-TEST(NetcdfAxes, LieByTheirAttributesInEveryOrderAndDirection) {
+TEST(NetcdfAxes, FollowTheirAttributesInEveryOrderAndDirection) {
   const test::TemporaryFolder folder;
   const auto file = folder / "marked.nc";
   std::array<std::size_t, 3> order = {0, 1, 2};
@@ -123,7 +123,7 @@ TEST(NetcdfAxes, AreKnownByAnyOfTheirAttributesOrTheirNames) {
   }
 }
 
-TEST(NetcdfAxes, WithNothingKnownTheLastIsX) {
+TEST(NetcdfAxes, WithoutAttributesTheLastIsX) {
   const test::TemporaryFolder folder;
   const std::array<AxisOfFile, 3> axes = {AxisOfFile{"p", {}, {0, 1, 2, 3, 4}}, AxisOfFile{"q", {}, {0, 1, 2, 3}},
                                           AxisOfFile{"r", {}, {5, 6, 7}}};
@@ -131,7 +131,7 @@ TEST(NetcdfAxes, WithNothingKnownTheLastIsX) {
   EXPECT_EQ(place_of_marker(open_volume(folder / "a.nc")), glm::dvec3(3, 1, 5));
 }
 
-TEST(NetcdfAxes, VerticalOnesGoUpWhateverTheyCount) {
+TEST(NetcdfAxes, VerticalAxesPointUp) {
   const test::TemporaryFolder folder;
   const auto file = folder / "v.nc";
   struct Vertical {
@@ -167,7 +167,7 @@ TEST(NetcdfAxes, VerticalOnesGoUpWhateverTheyCount) {
   }
 }
 
-TEST(NetcdfAxes, ThatAreNoneOfSpaceAreSteps) {
+TEST(NetcdfAxes, OutsideOfSpaceAreSteps) {
   const test::TemporaryFolder folder;
   for (const auto& [name, attribute] : std::vector<std::pair<const char*, const char*>>{
            {"member", "realization"}, {"month", ""}, {"number", ""}, {"spectral_band", ""}}) {

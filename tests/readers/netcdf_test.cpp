@@ -70,7 +70,7 @@ void write_air(const std::filesystem::path& file, int mode) {
   }
 }
 
-TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
+TEST(NetcdfGrids, HaveTheirValuesAtTheirPositions) {
   const test::TemporaryFolder folder;
   for (const int mode : {0, NC_64BIT_OFFSET, NC_NETCDF4}) {
     SCOPED_TRACE(mode);
@@ -285,7 +285,7 @@ TEST(NetcdfGrids, CellsWithBoundsHaveAValueEach) {
   }
 }
 
-TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
+TEST(NetcdfGrids, RefusesDamagedFilesInOneLine) {
   const test::TemporaryFolder folder;
   for (const int mode : {0, NC_NETCDF4}) {
     write_air(folder / "air.nc", mode);
@@ -361,7 +361,7 @@ void write_minc(const std::filesystem::path& file, bool has_time) {
   w.put(high, has_time ? std::vector<double>{1000, 1000, 1000, 1000} : std::vector<double>{1000, 505});
 }
 
-TEST(Minc, RealValuesLieWhereTheDirectionCosinesPutThem) {
+TEST(Minc, RealValuesArePlacedByTheDirectionCosines) {
   const test::TemporaryFolder folder;
   write_minc(folder / "head.mnc", false);
   ASSERT_TRUE(is_volume(folder / "head.mnc"));
@@ -465,7 +465,7 @@ TEST(Minc, TimeStepsAreChosen) {
   expect_no_volume(folder / "f.mnc", "there is no time step 2", options);
 }
 
-TEST(Minc, DamagedOnesAreRefusedInOneLine) {
+TEST(Minc, RefusesDamagedFilesInOneLine) {
   const test::TemporaryFolder folder;
   write_minc(folder / "head.mnc", false);
   const std::string whole = test::contents(folder / "head.mnc");

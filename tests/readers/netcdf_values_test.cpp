@@ -75,7 +75,7 @@ TEST(NetcdfValues, OfEveryTypeAreReadAsTheyAre) {
   }
 }
 
-TEST(NetcdfValues, OfSignedTypesAreUnsignedWhereAnAttributeSaysSo) {
+TEST(NetcdfValues, OfSignedTypesAreUnsignedByAnAttribute) {
   const std::vector<double> stored = {-1, 1, 2, 3, 4, 5, 6, -128};
   expect_samples(read_back(NC_BYTE, stored, {}, "true", 0), {255, 1, 2, 3, 4, 5, 6, 128});
   expect_samples(read_back(NC_BYTE, stored, {{"_FillValue", NC_BYTE, {-1}}}, "true", 0), {nan, 1, 2, 3, 4, 5, 6, 128});
@@ -117,7 +117,7 @@ TEST(NetcdfValues, OutsideTheirValidRangeAreBlank) {
   expect_samples(read_back(NC_SHORT, stored, {scale, shift, {"valid_range", NC_DOUBLE, {9, 21}}}), unpacked);
 }
 
-TEST(NetcdfValues, MissingOnesAreBlankAndTheOthersKeepTheirType) {
+TEST(NetcdfValues, MissingValuesAreBlankAndOthersKeepTheirType) {
   const std::vector<double> stored = {-9999, 1, 2, 3, 4, 5, -888, 7};
   for (const nc_type type : {NC_SHORT, NC_INT, NC_INT64, NC_FLOAT, NC_DOUBLE}) {
     SCOPED_TRACE(type);

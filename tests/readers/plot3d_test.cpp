@@ -116,7 +116,7 @@ TEST(Plot3d, EveryLayoutIsFoundAndReadWithoutAnOption) {
   }
 }
 
-TEST(Plot3d, ARecordForEachPlaneIsNamed) {
+TEST(Plot3d, ReportsARecordForEachPlane) {
   const Plot3dLayout layout{false, true, false, false, false, {{4, 3, 5}}};
   Writer w(layout);
   w.dimensions();
@@ -287,7 +287,7 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
         {words});
 }
 
-TEST(Plot3d, DamagedFilesAreTold) {
+TEST(Plot3d, ReportsDamagedFiles) {
   const Plot3dLayout layout{true, true, false, false, false, {{3, 3, 3}}};
   const std::string grid = grid_bytes(layout), solution = solution_bytes(layout);
   const test::TemporaryFolder folder;

@@ -319,7 +319,7 @@ TEST(PolyhedralFiles, EnSightGoldHasThemAsNfaced) {
   }
 }
 
-TEST(PolyhedralFiles, AnEnSightListNamesWhatIsMissing) {
+TEST(PolyhedralFiles, AnEnSightListNamesMissingFiles) {
   const test::TemporaryFolder folder;
   const auto file =
       folder.write("m.sos", "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 1\ncasefile: none.case\n");

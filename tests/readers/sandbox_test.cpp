@@ -49,7 +49,7 @@ int first_that_fails(MayFork may_fork, const std::vector<std::function<bool()>>&
 
 bool is_refused(long result) { return result < 0 && (errno == EACCES || errno == ENOSYS); }
 
-TEST(Sandbox, KeepsAReaderFromChangingAnything) {
+TEST(Sandbox, PreventsAReaderFromChangingAnything) {
   if (!kernel_has_it()) GTEST_SKIP() << "no seccomp filters here";
   const test::TemporaryFolder folder;
   const std::string file = folder.write("kept", "words").string(), other = (folder / "new").string();

@@ -150,7 +150,7 @@ TEST(SolverFiles, GambitsBricksAreReadRowByRowOrRoundAsTheyAre) {
   }
 }
 
-TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
+TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesOfItsDataFile) {
   const test::TemporaryFolder folder;
   const Cubes cubes(3);
   const auto file = folder.write("a.cas", fluent(cubes));

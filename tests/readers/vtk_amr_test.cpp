@@ -352,7 +352,7 @@ void add_leaves(vtkHyperTreeGrid& grid, vtkHyperTreeGridNonOrientedGeometryCurso
   }
 }
 
-TEST(HyperTreesOfVtk, AreReadAsVtkHasThemInMemory) {
+TEST(HyperTreesOfVtk, MatchVtksTreesInMemory) {
   const test::TemporaryFolder folder;
   const auto grid = trees_of_vtk();
   std::vector<std::pair<std::array<double, 6>, double>> leaves;

@@ -240,7 +240,7 @@ const std::string& good() {
   return text;
 }
 
-TEST_F(VtkFiles, AGzipFileReadsAsWhatItHolds) {
+TEST_F(VtkFiles, AGzipFileReadsAsItsContent) {
   const cells::MeshFile plain = read_mesh(write("m.vtu", good()));
   const std::filesystem::path file = folder / "m.vtu.gz", odd = folder / "odd";
   for (const auto& name : {file, odd}) {
@@ -258,7 +258,7 @@ TEST_F(VtkFiles, AGzipFileReadsAsWhatItHolds) {
   EXPECT_NE(message.find("m.vtu.gz: its compressed bytes end or break"), std::string::npos) << message;
 }
 
-TEST_F(VtkFiles, MissingEmptyAndDirectoryAreTold) {
+TEST_F(VtkFiles, ReportsMissingAndEmptyFilesAndDirectories) {
   EXPECT_NE(message_of([&] { read_mesh(folder / "none.vtu"); }).find("there is no such file"), std::string::npos);
   std::filesystem::create_directory(folder / "dir.vtu");
   EXPECT_NE(message_of([&] { read_mesh(folder / "dir.vtu"); }).find("it is a directory"), std::string::npos);
@@ -266,7 +266,7 @@ TEST_F(VtkFiles, MissingEmptyAndDirectoryAreTold) {
   EXPECT_NE(error("mesh.unknown", "x").find("`tessera formats` lists them"), std::string::npos);
 }
 
-TEST_F(VtkFiles, TextNamedAsMeshIsTold) {
+TEST_F(VtkFiles, ReportsTextNamedAsMesh) {
   for (const char* name :
        {"t.vtu", "t.pvtu", "t.vts", "t.vtk", "t.ex2", "t.tets", "t.bin", "t.stl", "t.ply", "t.poly", "t.smesh"})
     error(name, "Dear reader,\nthis is not a mesh at all, only some words.\n");
@@ -275,13 +275,13 @@ TEST_F(VtkFiles, TextNamedAsMeshIsTold) {
             std::string::npos);
 }
 
-TEST_F(VtkFiles, EveryTruncationIsTold) {
+TEST_F(VtkFiles, ReportsEveryTruncation) {
   const std::string& text = good();
   for (std::size_t size = 1; size < text.size() - 12; size += 1 + text.size() / 97)
     error("t.vtu", text.substr(0, size));
 }
 
-TEST_F(VtkFiles, WrongIndicesAreToldByCell) {
+TEST_F(VtkFiles, ReportsWrongIndicesByCell) {
   cells::CellBlock block = testing::mixed_mesh(2, 1, false);
   block.connectivity[20] = 4'000'000'000u;
   EXPECT_NE(error("i.vtu", testing::vtu_text(block)).find("uses point 4000000000"), std::string::npos);
@@ -290,7 +290,7 @@ TEST_F(VtkFiles, WrongIndicesAreToldByCell) {
             std::string::npos);
 }
 
-TEST_F(VtkFiles, WrongOffsetsTypesAndCountsAreTold) {
+TEST_F(VtkFiles, ReportsWrongOffsetsTypesAndCounts) {
   cells::CellBlock block = testing::mixed_mesh(2, 1, false);
   std::swap(block.offsets[3], block.offsets[5]);
   error("o.vtu", testing::vtu_text(block));
@@ -308,7 +308,7 @@ TEST_F(VtkFiles, WrongOffsetsTypesAndCountsAreTold) {
     error("c.vtu", with(good(), cells, fmt::format("NumberOfCells=\"{}\"", count)));
 }
 
-TEST_F(VtkFiles, LegacyCountsAreTold) {
+TEST_F(VtkFiles, ReportsWrongLegacyCounts) {
   const std::string text =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 "
       "1\nCELLS 1 5\n4 0 1 2 3\n"
@@ -323,7 +323,7 @@ TEST_F(VtkFiles, LegacyCountsAreTold) {
   error("k.vtk", with(text, "CELL_TYPES 1\n10", "CELL_TYPES 1\n42"));
 }
 
-TEST_F(VtkFiles, AnEmptyMeshAndAMeshOfNaNAreTold) {
+TEST_F(VtkFiles, ReportsAnEmptyMeshAndAMeshOfNaN) {
   cells::CellBlock empty;
   empty.offsets = {0};
   EXPECT_NE(error("e.vtu", testing::vtu_text(empty)).find("no cells"), std::string::npos);

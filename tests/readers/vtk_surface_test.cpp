@@ -79,14 +79,14 @@ TEST_F(VtkSurfaces, PolygonsAndStripsAreFilledWithTheirNumbers) {
   expect_cube(read_mesh(folder.write("b.vtp", vtp(0, cells("Strips", strips, strip_ends)))));
 }
 
-TEST_F(VtkSurfaces, LegacyOnesAreFilledToo) {
+TEST_F(VtkSurfaces, FillsLegacySurfaces) {
   std::string text = "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET POLYDATA\nPOINTS 8 float\n";
   text += std::string(points) + "\nPOLYGONS 6 30\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
   text += "POINT_DATA 8\nSCALARS t float 1\nLOOKUP_TABLE default\n0 2 4 2 2 4 6 4\n";
   expect_cube(read_mesh(folder.write("a.vtk", text)));
 }
 
-TEST_F(VtkSurfaces, OpenAndDamagedOnesAreTold) {
+TEST_F(VtkSurfaces, ReportsOpenAndDamagedSurfaces) {
   test::expect_bad_input(
       [&] {
         read_mesh(folder.write("a.vtp", vtp(5, cells("Polys", std::string(quads).substr(0, 39), "4 8 12 16 20"))));

@@ -57,7 +57,7 @@ std::string mesh_text(const std::string& data) {
          item("10 2", "Float", 4, data + ":/values") + "</Attribute></Grid></Domain></Xdmf>\n";
 }
 
-TEST(XdmfHdf5, CellsAndFieldsAreReadFromTheFileBeside) {
+TEST(XdmfHdf5, ReadsCellsAndFieldsFromTheNeighbouringFile) {
   if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;
   write_data((folder / "a.h5").string());

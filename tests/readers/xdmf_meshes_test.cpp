@@ -108,7 +108,7 @@ TEST_F(XdmfMeshes, SeriesOfDifferentLengthsGoByTheirTimes) {
   test::expect_bad_input([&] { read(domain, 3); }, {"no time step 3", "the file has 3"});
 }
 
-TEST_F(XdmfMeshes, ReferencesStandForWhatTheyName) {
+TEST_F(XdmfMeshes, ReferencesAreReplacedByTheirTargets) {
   const std::string mesh =
       "<Topology Reference=\"/Xdmf/Domain/Grid[@Name='mesh']/Topology\"/>"
       "<Geometry Reference=\"XML\">/Xdmf/Domain/Grid[1]/Geometry</Geometry>";
@@ -130,7 +130,7 @@ TEST_F(XdmfMeshes, ReferencesStandForWhatTheyName) {
   refused("/Xdmf/Domain/Grid/Grid/Topology", {"refers by Reference to itself"});
 }
 
-TEST_F(XdmfMeshes, TheSameNumbersInAFileBesideAreOneMesh) {
+TEST_F(XdmfMeshes, TheSameNumbersInANeighbouringFileAreOneMesh) {
   const std::vector<double> places = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
   const std::vector<std::int32_t> cells = {0, 1, 2, 3, 1, 2, 3, 4};
   folder.write("places.bin", test::bytes_of(places));
@@ -147,7 +147,7 @@ TEST_F(XdmfMeshes, TheSameNumbersInAFileBesideAreOneMesh) {
   expect_once(read(rewritten), 7);
 }
 
-TEST_F(XdmfMeshes, PointsThatSeveralBlocksShareAreThereForAll) {
+TEST_F(XdmfMeshes, SeveralBlocksShareTheirPoints) {
   const auto part = [](const std::string& name, const std::string& points, const std::string& corners) {
     return "<Grid Name=\"" + name +
            "\"><Topology TopologyType=\"Tetrahedron\" NumberOfElements=\"1\"><DataItem NumberType=\"Int\" "
@@ -163,7 +163,7 @@ TEST_F(XdmfMeshes, PointsThatSeveralBlocksShareAreThereForAll) {
   EXPECT_NEAR(testing::volume(read(domain, std::nullopt, "", {"other"}).mesh), volume * 2 / 3, 1e-12);
 }
 
-TEST_F(XdmfMeshes, MoreTextThanTheLibraryTakesIsSaid) {
+TEST_F(XdmfMeshes, ReportsMoreTextThanTheLibraryAccepts) {
   std::string places = "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1";
   places.append(10'000'000, ' ');
   test::expect_bad_input(
@@ -191,7 +191,7 @@ TEST_F(XdmfMeshes, FiniteElementFunctionsAreNamedAsNotRead) {
   }
 }
 
-TEST_F(XdmfMeshes, WhatTheFormatLeavesOutHasItsDefaults) {
+TEST_F(XdmfMeshes, OmittedPartsHaveTheFormatsDefaults) {
   // Numbers in the text, at the nodes; times as a list, and as first, step and count.
   const auto bare = [](double first) {
     return "<Grid>" + included + "<Attribute Name=\"u\"><DataItem Dimensions=\"5\">" + values(first) +

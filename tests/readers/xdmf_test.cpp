@@ -79,7 +79,7 @@ class Xdmf : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-TEST_F(Xdmf, TetsHaveTheirPlacesAndFields) {
+TEST_F(Xdmf, TetsHaveTheirPositionsAndFields) {
   const cells::MeshFile mesh = read(two_tets("m", 0, 1));
   EXPECT_FALSE(is_volume(folder / "a.xmf"));
   EXPECT_EQ(mesh.format, "XDMF");
@@ -139,7 +139,7 @@ TEST_F(Xdmf, GridsInSpaceAreBlocks) {
   for (const glm::dvec3& p : one.mesh.positions) EXPECT_GE(p.x, 5);
 }
 
-TEST_F(Xdmf, MixedCellsAreToldByTheirNumbers) {
+TEST_F(Xdmf, MixedCellsAreIdentifiedByTheirNumbers) {
   // A unit cube, a wedge and a pyramid on its sides, and a triangle, which is not a volume cell.
   const std::string topology = "<Topology TopologyType=\"Mixed\" NumberOfElements=\"4\">\n" +
                                item("26", "9 0 1 2 3 4 5 6 7  8 1 8 5 2 9 6  7 4 5 6 7 10  4 0 1 2", "Int") +
@@ -198,7 +198,7 @@ TEST_F(Xdmf, RectilinearGridsAreVolumesAndCurvilinearOnesMeshes) {
   EXPECT_NEAR(testing::volume(mesh.mesh), 2, 1e-12);
 }
 
-TEST_F(Xdmf, BinaryNumbersLieBeside) {
+TEST_F(Xdmf, ReadsBinaryNumbersFromNeighbouringFiles) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<float> values = {1, 2, 3, 4};
   const auto grid = [&](const std::string& name) {
@@ -246,7 +246,7 @@ TEST_F(Xdmf, InAGzipFileHaveTheirNumbersInTheText) {
   test::expect_bad_input([&] { read_mesh(packed(file_of(text))); }, {"a.xmf.gz: it goes with other files"});
 }
 
-TEST_F(Xdmf, DamagedAndStrangeOnesAreRefusedInOneLine) {
+TEST_F(Xdmf, RefusesDamagedAndUnusualFilesInOneLine) {
   expect_refused(two_tets("m", 0, 1).substr(0, 300), {});
   std::string text = two_tets("m", 0, 1);
   text.replace(text.find("0 2 1 4"), 7, "0 2 1 9");

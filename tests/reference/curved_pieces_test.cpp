@@ -94,7 +94,7 @@ TEST(SmoothScalar, EndsAtASingularity) {
   EXPECT_NEAR(integral, 2.0 / 3, 1e-5);  // of the midpoint rule
 }
 
-TEST(SmoothScalar, KnowsWhereItTurns) {
+TEST(SmoothScalar, FindsItsExtrema) {
   const auto pieces = smooth_pieces(-1, 1, 1, [](double z) { return 4 * z * z * z - 3 * z; });
   ASSERT_EQ(pieces.size(), 1u);
   const std::vector<double> turns = pieces[0].turning_points();

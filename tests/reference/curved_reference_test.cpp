@@ -179,7 +179,7 @@ void expect_same(const CurvedMesh& one, const CurvedMesh& other, const std::stri
   EXPECT_GT(hits, 50) << name;
 }
 
-TEST(CurvedReference, DoesNotMindAsWhichTypeACellIsGiven) {
+TEST(CurvedReference, IsTheSameForEveryTypeThatACellIsGivenAs) {
   const auto warped_as = [](const std::string& name) {
     CurvedMesh mesh;
     mesh.add(named(name), warped, any_field);

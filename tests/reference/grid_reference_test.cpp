@@ -299,7 +299,7 @@ TEST(GridReference, ClippingCutsTheRay) {
   EXPECT_NEAR(reference.pixel(4.9, 5.2).length, 0.75, rounding);
 }
 
-TEST(GridReference, TheJudgeTakesItAsItTakesMeshes) {
+TEST(GridReference, TheJudgeAcceptsIt) {
   const Source source = sampled(lattice({6, 6, 6}, {-1, -1, -1}, {1, 1, 1}), wave);
   const scene::Camera camera = looking({2, 1, 3}, {0, 0, 0}, ProjectionKind::orthographic, 1.6);
   const GridReference reference(*source, camera, window, bumpy);

@@ -78,7 +78,7 @@ TEST(ReferenceLayers, OfHomogeneousMatterAreOfOneThickness) {
 }
 
 /// Extinction k z below the front: the optical depth of the first d is 2 k (1 - d / 2) d + ..., a parabola.
-TEST(ReferenceLayers, OfARampEndWhereItsParabolaDoes) {
+TEST(ReferenceLayers, OfARampEndAtTheClosedFormsDepth) {
   const double steepness = 2;
   const Both both(height, scene::TransferFunction({{-1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 2 * steepness}}));
   const double threshold = 0.6, limit = -std::log1p(-threshold);

@@ -26,7 +26,7 @@ TEST(View, DecimalNoiseOfTheCameraIsRoundedAway) {
   EXPECT_EQ(view.project({0.3, 0, 0}).homogeneous.x, 50);
 }
 
-TEST(View, DecimalNoiseOfPerspectiveIsRoundedAwayBeforeBesideAndBehindTheEye) {
+TEST(View, DecimalNoiseOfPerspectiveIsRoundedAwayAllAroundTheEye) {
   const View view(looking({0.1, 0.2, 0.3}, {0.4, 0.9, -0.7}, ProjectionKind::perspective, 40, {0.1, 1, 0.2}),
                   {101, 61});
   const double per_tangent = 30.5 / std::tan(20 * std::acos(-1.0) / 180);

@@ -29,7 +29,7 @@ ViewRequest named(const char* word) {
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b) { EXPECT_LT(glm::length(a - b), 1e-12); }
 
-TEST(DefaultView, WhatStandsHasZUpWhateverItsLongestSide) {
+TEST(DefaultView, UprightDataHasZUpWhateverItsLongestSide) {
   for (const Box& box : {box_of(1, 1, 1), box_of(9, 2, 3), box_of(2, 9, 3), box_of(2, 3, 9), box_of(8, 9, 3)}) {
     const ViewBasis basis = basis_of(box);
     EXPECT_NEAR(basis.right.z, 0, 1e-12);
@@ -42,7 +42,7 @@ TEST(DefaultView, FlatThingsAreSeenFromAbove) {
   EXPECT_GT(basis_of(box_of(10, 10, 3)).forward.z, -0.5);
 }
 
-TEST(DefaultView, TheWiderSideLiesAcross) {
+TEST(DefaultView, TheWiderSideIsHorizontal) {
   EXPECT_GT(std::abs(basis_of(box_of(9, 2, 3)).right.x), 0.8);
   EXPECT_GT(std::abs(basis_of(box_of(2, 9, 3)).right.y), 0.8);
 }
@@ -122,7 +122,7 @@ TEST(DefaultView, ACallersCameraKeepsItsBitsUnlessSomethingIsAsked) {
   EXPECT_THROW(adjusted_view(camera, box_of(1, 1, 1), square, named("front")), Error);
 }
 
-TEST(DefaultView, RefusesWhatIsNoDirectionOrNumber) {
+TEST(DefaultView, RefusesInvalidDirectionsAndNumbers) {
   ViewRequest request = named("front");
   request.up = glm::dvec3(0, 1, 0);
   EXPECT_THROW(view_of_box(box_of(1, 1, 1), square, request), Error);

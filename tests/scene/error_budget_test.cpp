@@ -12,7 +12,7 @@ namespace {
 
 namespace budget = error_budget;
 
-TEST(ErrorBudget, NoWayToAPictureSpendsMoreThanWasPromised) {
+TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
   for (double exponent = -6; exponent <= 0; exponent += 1.0 / 64) {
     const double accuracy = std::max(budget::least_accuracy, std::pow(10, exponent));
     // A mesh uses the lattice if that is accurate enough, a grid float lanes; double precision always is.
@@ -40,7 +40,7 @@ TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
   EXPECT_GT(budget::mesh_on_lattice(1e-4, 1000), 1e-4);
 }
 
-TEST(ErrorBudget, LightOfEmissionAloneIsThatOfDenseMatterOrOfAllOfTheWay) {
+TEST(ErrorBudget, EmissionOnlyLightIsThatOfDenseMatterOrOfTheWholeRay) {
   const TransferFunction dense({{0, {2, 0.5, 0}, 4}, {1, {1, 3, 0}, 1}}), clear({{0, {2, 0, 0}, 0}, {1, {1, 0, 0}, 1}});
   EXPECT_EQ(most_light(dense, Emission::absorption, 100), 3);
   EXPECT_EQ(most_light(dense, Emission::independent, 100), 3);
@@ -49,7 +49,7 @@ TEST(ErrorBudget, LightOfEmissionAloneIsThatOfDenseMatterOrOfAllOfTheWay) {
   EXPECT_EQ(most_light(clear, Emission::independent, 0.1), 1);
 }
 
-TEST(ErrorBudget, AnAccuracyThatPicturesDoNotHaveIsRefused) {
+TEST(ErrorBudget, RefusesAnAccuracyBelowThatOfImages) {
   EXPECT_NO_THROW(check_accuracy(1e-6));
   for (const double accuracy : {0.0, -1.0, 9e-7, 1e-9, HUGE_VAL, std::nan("")})
     EXPECT_THROW(check_accuracy(accuracy), Error) << accuracy;

@@ -67,7 +67,7 @@ TEST(Error, JoinsPartsWhateverTheyHold) {
   EXPECT_EQ(parts(error), (Parts{"odd: name; 1.vtu", "is cut: short", "copy it; or write it again"}));
 }
 
-TEST(Error, LeavesTheMarksOfEmptyPartsOut) {
+TEST(Error, OmitsTheSeparatorsOfEmptyParts) {
   const auto line = [](const char* subject, const char* remedy) {
     const Error error(ErrorCode::bad_input, subject, "is wrong", remedy);
     EXPECT_EQ(parts(error), (Parts{subject, "is wrong", remedy}));
@@ -78,7 +78,7 @@ TEST(Error, LeavesTheMarksOfEmptyPartsOut) {
   EXPECT_EQ(line("", "correct it"), "is wrong; correct it");
 }
 
-TEST(Error, EndsAtANullCharacterAsWhatDoes) {
+TEST(Error, EndsAtANullCharacterLikeWhat) {
   const Error from_line(ErrorCode::bad_input, std::string("a\0b: c; d", 9));
   EXPECT_EQ(parts(from_line), (Parts{"a", "", ""}));
   const Error from_parts(ErrorCode::bad_input, std::string_view("a\0b", 3), "c", "d");
@@ -101,7 +101,7 @@ TEST(Error, CopiesKeepTheParts) {
   }
 }
 
-TEST(Error, SubjectsThatAreKnownAreKeptWhole) {
+TEST(Error, KeepsKnownSubjectsWhole) {
   const Error error = bad_input("odd: name; 1.vtu: line 3: is cut short; write it again");
   EXPECT_EQ(error.subject(), "odd");
   const Error known = with_subject(error, "odd: name; 1.vtu");

@@ -31,7 +31,7 @@ TetMesh boxes(glm::dvec3 size) {
 // 2^14 samples are requested, plus one for each tet with a fractional share.
 std::size_t most_samples(const TetMesh& mesh) { return (1 << 14) + mesh.tets.size(); }
 
-TEST(FieldSamples, StandForTheVolumeAndTheField) {
+TEST(FieldSamples, RepresentTheVolumeAndTheField) {
   const TetMesh mesh = boxes({1, 1, 1});
   const FieldSamples of = sample_mesh(mesh, {}, facts_of(mesh));
   EXPECT_GE(of.samples.size(), std::size_t{1} << 14);
@@ -46,7 +46,7 @@ TEST(FieldSamples, StandForTheVolumeAndTheField) {
 }
 
 // The tets' volumes, in cubes of the longest side, are too small for volume_sum() or values derived from it.
-TEST(FieldSamples, AreNoMoreInBoxesOfAnyShapeAndSize) {
+TEST(FieldSamples, AreBoundedForBoxesOfAnyShapeAndSize) {
   for (const glm::dvec3 size : {glm::dvec3(1, 1, 1e17),
                                 {1, 1e14, 1},
                                 {1e11, 1e-11, 1e11},

@@ -16,7 +16,7 @@ std::optional<FillValue> found_in(const std::vector<double>& values) {
   return find_fill_value(values, *low, *high);
 }
 
-TEST(FillValues, AreUsualOnesFarFromAllOthers) {
+TEST(FillValues, AreUsualValuesFarFromAllOthers) {
   for (const double fill : {65535.0, 32767.0, -9999.0, -999.25, -32768.0, 99999.0, 1e20, -3.4028234663852886e38,
                             9.969209968386869e36, std::numeric_limits<double>::max()}) {
     const std::optional<FillValue> found = found_in({1, fill, 5, 3, fill, 7.5});
@@ -29,7 +29,7 @@ TEST(FillValues, AreUsualOnesFarFromAllOthers) {
   }
 }
 
-TEST(FillValues, OfSeveralAreAllFarFromTheRestTheHugeOnesFirst) {
+TEST(FillValues, SeveralAreListedHugeOnesFirst) {
   const std::vector<double> both = {1, -9999, 5, -32768, -9999, 7};
   const std::optional<FillValue> two = found_in(both);
   ASSERT_TRUE(two.has_value());
@@ -50,7 +50,7 @@ TEST(FillValues, OfSeveralAreAllFarFromTheRestTheHugeOnesFirst) {
   EXPECT_EQ(huge->others.high, 7);
 }
 
-TEST(FillValues, AreNoneThatOthersAreNear) {
+TEST(FillValues, ExcludeValuesThatOthersAreNear) {
   EXPECT_FALSE(found_in({-999, 4000, 0, -500}));                 // separated by half of the range of the others
   EXPECT_FALSE(found_in({-4000, 2, 100}));                       // not a common fill value
   EXPECT_FALSE(found_in({1e20, 3e19, 2e19, 5e18}));              // a quantity of that magnitude

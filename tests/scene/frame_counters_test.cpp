@@ -36,7 +36,7 @@ void expect_listed_once(const Table& list) {
   }
 }
 
-TEST(FrameCounters, EachIsInTheListOnceAndIsPutTogetherAsItSays) {
+TEST(FrameCounters, EachIsListedOnceAndCombinedAsDeclared) {
   expect_listed_once<FrameCounters>(frame_counters);
   expect_listed_once<GridCounters>(grid_counters);
   expect_listed_once<MeshCounts>(mesh_counters);
@@ -44,7 +44,7 @@ TEST(FrameCounters, EachIsInTheListOnceAndIsPutTogetherAsItSays) {
   expect_listed_once<HigherOrderCells>(higher_order_bounds);
 }
 
-TEST(FrameCounters, TheReferenceSaysWhatEachCounts) {
+TEST(FrameCounters, TheReferenceDescribesEachCounter) {
   std::ifstream file(TESSERA_SOURCE_DIR "/docs/REFERENCE.md");
   const std::string guide{std::istreambuf_iterator<char>(file), {}};
   const auto expect_said = [&](std::string_view name, std::string_view meaning) {

@@ -37,7 +37,7 @@ TEST(Grid, IndexAndWorldAreInverseInsideAndOutside) {
     }
 }
 
-TEST(Grid, LatticePointsLieWhereAxesAndSpacingPutThem) {
+TEST(Grid, LatticePointsFollowAxesAndSpacing) {
   EXPECT_EQ(world_of_index(turned(), {2, 1, 1}), glm::dvec3(100 - 2, -20 + 1, 7 - 3));
   EXPECT_EQ(world_of_index(stretched(), {1.25, 1.5, 0}), glm::dvec3(1, 5.5, 2));
   EXPECT_EQ(bounds(turned()), (Box{{94, -20, 1}, {100, -18, 7}}));

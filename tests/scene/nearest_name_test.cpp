@@ -18,7 +18,7 @@ TEST(NearestName, IsTheOneThatWasMeant) {
   EXPECT_EQ(nearest_name("P", names), "p");
 }
 
-TEST(NearestName, IsNoneIfNothingIsLikeIt) {
+TEST(NearestName, IsEmptyIfNoNameIsSimilar) {
   const std::vector<std::string> names = {"pressure", "Temperature"};
   EXPECT_EQ(nearest_name("density", names), std::nullopt);
   EXPECT_EQ(nearest_name("", names), std::nullopt);

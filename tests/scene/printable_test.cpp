@@ -8,7 +8,7 @@
 namespace tessera {
 namespace {
 
-TEST(Printable, LeavesWhatIsShown) {
+TEST(Printable, KeepsVisibleCharacters) {
   for (const std::string text : {"", "plain",
                                  "Dr\xc3\xbc"
                                  "cke",
@@ -16,7 +16,7 @@ TEST(Printable, LeavesWhatIsShown) {
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Printable, HasABlankForEachOrderToATerminal) {
+TEST(Printable, ReplacesTerminalControlsByBlanks) {
   EXPECT_EQ(printable("\x1b[2Jf"), " [2Jf");
   EXPECT_EQ(printable("a\nb\r\tc\x7f"), "a b  c ");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a b");
@@ -32,7 +32,7 @@ TEST(Printable, HasABlankForEachOrderToATerminal) {
   EXPECT_EQ(printable("\xe2\x82"), "\xe2 ") << "a character cut short";
 }
 
-TEST(Printable, HasABlankForWhatTurnsTheDirectionOfWriting) {
+TEST(Printable, ReplacesBidirectionalControlsByBlanks) {
   for (const std::string mark : {"\xd8\x9c", "\xe2\x80\x8e", "\xe2\x80\x8f", "\xe2\x80\xaa", "\xe2\x80\xae",
                                  "\xe2\x81\xa6", "\xe2\x81\xa9", "\xe2\x80\xa8"})
     EXPECT_EQ(printable("a" + mark + "b"), "a b");
@@ -41,7 +41,7 @@ TEST(Printable, HasABlankForWhatTurnsTheDirectionOfWriting) {
       << "their neighbours";
 }
 
-TEST(Printable, LeavesOutTheMiddleOfWhatIsLong) {
+TEST(Printable, OmitsTheMiddleOfLongText) {
   EXPECT_EQ(printable(std::string(4000, 'y')), std::string(4000, 'y'));
   const std::string shown = printable("begin" + std::string(30'000'000, 'y') + "end; remedy");
   EXPECT_LT(shown.size(), 4100u);

@@ -29,7 +29,7 @@ TEST(TetMesh, ThicknessIsVolumeOverTheLargestFaceAtAnyScale) {
   EXPECT_EQ(mean_thickness(TetMesh{}), 0);
 }
 
-TEST(TetMesh, ASubsetKeepsItsTetsAndNoMore) {
+TEST(TetMesh, ASubsetKeepsExactlyItsTets) {
   TetMesh mesh = corner_tet({1, 2, 3});
   mesh.positions.push_back({5, 5, 5});
   mesh.scalars.push_back(55);

@@ -37,7 +37,7 @@ TEST(Trace, NoSpanOfAnyThreadIsLost) {
   EXPECT_EQ(*numbers.rbegin(), static_cast<std::uint32_t>(threads - 1));  // dense
 }
 
-TEST(Trace, FacesShareARecordingAndGiveTheirRole) {
+TEST(Trace, RolesShareARecordingAndNameTheirSpans) {
   std::optional<Trace> projecting(TraceRole::projector);
   Trace compositing(*projecting, TraceRole::compositor);
   { const TraceScope scope(&*projecting, "composite"); }
@@ -51,7 +51,7 @@ TEST(Trace, FacesShareARecordingAndGiveTheirRole) {
   EXPECT_LE(spans[0].start_us + spans[0].wall_us, spans[1].start_us);  // one clock
 }
 
-TEST(Trace, ASpanTakesItsFacesFrameUnlessItNamesOne) {
+TEST(Trace, ASpanTakesItsRolesFrameUnlessItNamesOne) {
   Trace trace;
   Trace other(trace, TraceRole::compositor);
   trace.set_frame(4);
@@ -69,7 +69,7 @@ TEST(Trace, ASpanTakesItsFacesFrameUnlessItNamesOne) {
   EXPECT_EQ(spans[3].role, TraceRole::compositor);
 }
 
-TEST(Trace, SpansOfATileCarryItsNumberThroughEveryFace) {
+TEST(Trace, SpansOfATileCarryItsNumberInEveryRole) {
   Trace trace;
   Trace other(trace, TraceRole::compositor);
   {

@@ -86,7 +86,7 @@ TEST(Access, RefusesPagesOfOtherServers) {
   EXPECT_FALSE(access.refusal(c));
 }
 
-TEST(Access, GivesThePageToWhoeverCallsTheServerByItsName) {
+TEST(Access, ServesThePageToRequestsWithTheServersHostName) {
   const Access access = at_loopback({"viz.example.org"});
   for (const char* host : {"127.0.0.1:8080", "localhost", "viz.example.org"}) {
     EXPECT_FALSE(access.page_refusal(host)) << host;

@@ -28,7 +28,7 @@ TEST(LevelChoice, FindsTheLargestPictureWithinTheBudget) {
   }
 }
 
-TEST(LevelChoice, StaysWhereItIsOnceItIsThere) {
+TEST(LevelChoice, ConvergesAndStays) {
   LevelChoice choice(100);
   const Cost cost{20, 500};
   move(choice, cost, 30);
@@ -39,7 +39,7 @@ TEST(LevelChoice, StaysWhereItIsOnceItIsThere) {
   }
 }
 
-TEST(LevelChoice, AsksForAStandInWhereTheDataAloneTakesTooLong) {
+TEST(LevelChoice, RequestsACoarseVersionWhereTheDataTakeTooLong) {
   LevelChoice choice(100);
   const Cost slow{200, 300}, quick{5, 60};
   move(choice, slow, 10);

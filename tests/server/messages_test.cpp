@@ -20,7 +20,7 @@ TEST(Messages, AreStatesAcknowledgementsAndPauses) {
   EXPECT_TRUE(std::holds_alternative<PauseMessage>(parse_message(R"({"type":"pause","more":[1]})")));
 }
 
-TEST(Messages, AreRefusedInOneSentenceThatSaysWhatIsWrong) {
+TEST(Messages, AreRefusedInOneSentenceWithTheReason) {
   for (const char* text :
        {"", "7", "[]", "{", "{}", R"({"type":1})", R"({"type":"stat"})", R"({"type":"ack"})",
         R"({"type":"ack","frame":-1})", R"({"type":"ack","frame":1.5})", R"({"type":"ack","frame":"1"})",

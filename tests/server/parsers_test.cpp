@@ -63,7 +63,7 @@ bool is_taken(const Work& work, const std::string& text) {
   }
 }
 
-TEST(ServerParsers, TakeMutatedMessagesOrSayWhatIsWrong) {
+TEST(ServerParsers, AcceptMutatedMessagesOrReportTheReason) {
   const std::uint32_t seed = std::random_device()();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -84,7 +84,7 @@ TEST(ServerParsers, TakeMutatedMessagesOrSayWhatIsWrong) {
   EXPECT_LT(messages, trials);
 }
 
-TEST(ServerParsers, TakeMutatedHostsAndQueries) {
+TEST(ServerParsers, AcceptMutatedHostsAndQueries) {
   std::mt19937 random(5);
   const std::vector<std::string> names = {"127.0.0.1:8080", "[::1]:80", "localhost", "token=12&state=%7B%7D",
                                           "a.b:443"};

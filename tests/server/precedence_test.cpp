@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(Precedence, HoldsLongWorkUpWhileShortWorkGoesOn) {
+TEST(Precedence, HoldsLongWorkWhileShortWorkRuns) {
   Precedence precedence;
   const Precedence::Clock::time_point start{};
   precedence.pass({});
@@ -28,7 +28,7 @@ TEST(Precedence, HoldsLongWorkUpWhileShortWorkGoesOn) {
   EXPECT_TRUE(has_passed);
 }
 
-TEST(Precedence, LetsPassWhatIsToStop) {
+TEST(Precedence, LetsStoppedWorkPass) {
   Precedence precedence;
   precedence.begin_short({});
   std::stop_source stop;

@@ -17,7 +17,7 @@ TEST(StageTimes, ShareTheFrameByTimeInNoStageInside) {
   EXPECT_EQ(times, (std::map<std::string, double>{{"composite", 12}, {"integrate", 8}, {"project", 12}}));
 }
 
-TEST(StageTimes, AreNoneOfNoSpans) { EXPECT_TRUE(stage_times({}, 5).empty()); }
+TEST(StageTimes, AreEmptyWithoutSpans) { EXPECT_TRUE(stage_times({}, 5).empty()); }
 
 }  // namespace
 }  // namespace tessera::server

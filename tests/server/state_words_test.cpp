@@ -29,7 +29,7 @@ TEST(StateWords, AreTheOptionsOfRender) {
                                       "--transfer-function=viridis:rise"}));
 }
 
-TEST(StateWords, StandOverThoseTheServerWasStartedWith) {
+TEST(StateWords, OverrideThoseTheServerWasStartedWith) {
   const OptionWords base =
       words_of({{"field", {"p"}}, {"log", {"true"}}, {"view", {"front"}}, {"zoom", {"2"}}, {"threads", {"2"}}});
   EXPECT_EQ(arguments_of(state_words(base, Json::object())),
@@ -41,7 +41,7 @@ TEST(StateWords, StandOverThoseTheServerWasStartedWith) {
 }
 
 // As a bare option it would take the next one as its text.
-TEST(StateWords, HaveTextThatIsTrueAsText) {
+TEST(StateWords, KeepTrueGivenAsTextAsText) {
   const Json state = Json::parse(R"({"annotate":["true"],"color-bar-title":"true","field":"true","surface":["true"],
     "transfer-function":"viridis","smooth":true,"scale-bar":true})");
   EXPECT_EQ(arguments_of(state_words({}, state)),
@@ -67,7 +67,7 @@ TEST(StateWords, NameFilesOfSurfacesThatTheServerWasStartedWith) {
     EXPECT_THROW(state_words(base, Json::parse(text)), Error) << text;
 }
 
-TEST(StateWords, NameNoFilesAndNoOtherOptions) {
+TEST(StateWords, RefuseFilesAndOtherOptions) {
   for (const char* text : {R"({"camera":"view.json"})",
                            R"({"transfer-function":"/etc/passwd"})",
                            R"({"transfer-function":"map.json"})",

@@ -40,7 +40,7 @@ bool is_idle(WorkQueue& queue) {
   return true;
 }
 
-TEST(WorkQueue, GoesFromTheFullPictureToTheExactOneAndThenRests) {
+TEST(WorkQueue, RendersTheFullThenTheExactImageAndThenRests) {
   WorkQueue queue(100);
   const ClientId client = queue.join(std::make_shared<NoChannel>());
   queue.set_state(client, state(1, false));
@@ -102,7 +102,7 @@ TEST(WorkQueue, TakesClientsInTurn) {
   EXPECT_EQ(frames, (std::vector<int>{10, 10, 10}));
 }
 
-TEST(WorkQueue, WaitsForDataUntilItComesEvenWhereItCameMeanwhile) {
+TEST(WorkQueue, WaitsForDataEvenIfItArrivedInTheMeantime) {
   WorkQueue queue(100);
   const ClientId client = queue.join(std::make_shared<NoChannel>());
   queue.set_state(client, state(1, false));
@@ -133,7 +133,7 @@ TEST(WorkQueue, LeavesFailedStatesAndPausedClientsAlone) {
   EXPECT_EQ(take_frame(queue).number, 3u);
 }
 
-TEST(WorkQueue, StopsWhatIsForAClientThatLeaves) {
+TEST(WorkQueue, StopsTheWorkOfAClientThatLeaves) {
   WorkQueue queue(100);
   const ClientId client = queue.join(std::make_shared<NoChannel>());
   queue.set_state(client, state(1, false));
@@ -144,7 +144,7 @@ TEST(WorkQueue, StopsWhatIsForAClientThatLeaves) {
   EXPECT_TRUE(is_idle(queue));
 }
 
-TEST(WorkQueue, StopsTheTaskAtHandWhenItEnds) {
+TEST(WorkQueue, StopsTheCurrentTaskWhenItEnds) {
   class Stopped final : public Task {
    public:
     Turn turn() override { return Turn::again; }

@@ -90,7 +90,7 @@ TEST_P(Arrangements, ListsOfAnyLengthAreSortedSideBySide) {
   }
 }
 
-TEST(ListSort, NothingToSortIsNoFault) {
+TEST(ListSort, AcceptsEmptyLists) {
   TESSERA_OSMESA_OR_SKIP(context);
   EXPECT_TRUE(sorted(context, {}, {}).empty());
 }

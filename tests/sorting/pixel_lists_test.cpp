@@ -66,7 +66,7 @@ TEST(PixelLists, AZeroLengthSegmentComesBeforeTheOneThatBeginsThere) {
   EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 1, 0}));
 }
 
-TEST(PixelLists, ByBackAloneEqualOnesStayInTetOrder) {
+TEST(PixelLists, SortedByBackEqualSegmentsStayInTetOrder) {
   std::mt19937 random(4);
   std::vector<std::pair<std::uint32_t, Key>> given;
   // Fronts are noise that must be ignored. Tets arrive in order, as passed to the rasterizer.

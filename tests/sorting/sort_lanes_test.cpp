@@ -131,7 +131,7 @@ TEST(SortLanes, TheNetworkOfSixteenSortsAllZeroOneSequences) {
 
 /// Depths as far apart as 32 bits allow leave no bits for the row: keys then drop their lowest bits, and must report
 /// it.
-TEST(PackedKeys, OrderDepthsOrSayThatTheyDoNot) {
+TEST(PackedKeys, OrderDepthsOrReportThatTheyDoNot) {
   tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);
     const std::size_t lanes = lane_count();

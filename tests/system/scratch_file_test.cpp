@@ -85,7 +85,7 @@ TEST(FileSources, ReadWhatMemoryWouldGive) {
   }
 }
 
-TEST(FileSources, AFileThatIsShortenedMeanwhileIsAnErrorOfItsName) {
+TEST(FileSources, ReportsAFileThatIsShortenedWhileRead) {
   const test::TemporaryFolder folder;
   const auto file = write(folder, random_bytes(1000));
   const FileSource source(grid_of({10, 10, 10}, scene::SampleType::uint8), file, 0, "big.raw",
@@ -97,7 +97,7 @@ TEST(FileSources, AFileThatIsShortenedMeanwhileIsAnErrorOfItsName) {
   EXPECT_NE(fault.message.find("big.raw: it has been shortened to 500 bytes"), std::string::npos) << fault.message;
 }
 
-TEST(ScratchFiles, HaveNoNameAndCanBeReadOnWhenTheirWriterIsGone) {
+TEST(ScratchFiles, AreUnnamedAndReadableAfterTheirWriterEnds) {
   const test::TemporaryFolder folder;
   const ScratchFolder scratch(folder.path());
   auto file = std::make_unique<system::ScratchFile>("v.nii.gz", 5);
@@ -112,14 +112,14 @@ TEST(ScratchFiles, HaveNoNameAndCanBeReadOnWhenTheirWriterIsGone) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(ScratchFiles, AFolderThatIsNotThereIsNamedWithARemedy) {
+TEST(ScratchFiles, ReportsAMissingDirectoryWithARemedy) {
   const test::TemporaryFolder folder;
   const ScratchFolder scratch(folder / "nowhere");
   expect_bad_input([] { system::ScratchFile("v.nii.gz", 5); },
                    {"v.nii.gz: its samples", (folder / "nowhere").string(), "No such file", "set TMPDIR"});
 }
 
-TEST(ScratchFiles, NoRoomIsSaidBeforeAnythingIsWritten) {
+TEST(ScratchFiles, ReportsAFullDiskBeforeWriting) {
   const test::TemporaryFolder folder;
   const ScratchFolder scratch(folder.path());
   rlimit before{};

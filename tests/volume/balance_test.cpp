@@ -82,7 +82,7 @@ void expect_tiling(const ImageSplit& split, int processes, scene::ImageSize size
   EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), static_cast<std::ptrdiff_t>(owners.size()));
 }
 
-TEST(Balance, VisitedCostIsTheWayOfEachRayThroughTheCells) {
+TEST(Balance, VisitedCostIsTheLengthOfEachRayInTheCells) {
   scene::GridGeometry geometry;
   geometry.points = {33, 33, 33};
   geometry.origin = {-1, -1, -1};
@@ -195,7 +195,7 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
   }
 }
 
-TEST(Balance, CellsThatNoRayMetLeanOnThoseAroundThem) {
+TEST(Balance, CellsThatNoRayMetTakeCostsOfTheirNeighbours) {
   const scene::GridIndex voxels{64, 64, 64};
   WorkTally tally(voxels);
   ASSERT_EQ(tally.cells().count(), 512u);

@@ -104,7 +104,7 @@ scene::TransferFunction bright_function(double light) {
   return scene::TransferFunction(std::move(knots));
 }
 
-TEST(VolumeCaster, WhatFloatLanesCannotTellIsCastInDoublePrecision) {
+TEST(VolumeCaster, UncertainRaysAreCastInDoublePrecision) {
   const Volume v = make_volume({13, 11, 9}, Field::noise);
   const auto expect_kept = [&](double accuracy, const scene::TransferFunction& function, Emission emission) {
     volume::RenderSettings s;

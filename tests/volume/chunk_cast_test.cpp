@@ -204,7 +204,7 @@ TEST(ChunkCast, RectilinearGridsGoInChunksToo) {
   }
 }
 
-TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
+TEST(ChunkCast, UncertainRaysAreCastAgainWithinTheirChunk) {
   // Surfaces of a step in every voxel.
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   const scene::TransferFunction steps({{0.5, {0.1, 0.3, 0.9}, 0}, {0.5, {1, 0.5, 0.2}, 400}});
@@ -224,7 +224,7 @@ TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
   EXPECT_LT(difference(sink.image, whole), 2e-5);
 }
 
-TEST(ChunkCast, ARayThatGoesOnHasTheBitsOfOneInOneGo) {
+TEST(ChunkCast, AContinuedRayHasTheBitsOfAnUninterruptedOne) {
   const Volume points = make_volume({65, 65, 65}, Field::smooth), cells = make_volume({64, 64, 64}, Field::noise, true);
   const std::pair<const char*, std::size_t> ways[] = {{"oblique", 2}, {"from -x", 0}, {"from y", 1}, {"along z", 2}};
   test::SomeCases some(2);
@@ -340,7 +340,7 @@ TEST(ChunkCast, RaysEndEarlyInWhateverChunks) {
   }
 }
 
-TEST(ChunkCast, WhatGetsThroughAfterAChunkIsTheLightThatIsLeft) {
+TEST(ChunkCast, TransmittanceAfterAChunkIsTheRemainingLight) {
   // Shadows: the camera is the light, and the box is homogeneous, with extinction 2.
   Volume v = make_volume({17, 17, 33}, Field::smooth);
   std::fill(v.values.begin(), v.values.end(), 0.5f);
@@ -402,7 +402,7 @@ TEST(ChunkCast, AChunkReadsItsOwnBricksAlone) {
     }
 }
 
-TEST(ChunkCast, StopsAndRefusesWhatIsNoChunk) {
+TEST(ChunkCast, StopsOnRequestAndRefusesInvalidChunks) {
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
   ChunkCast cast(renderer, view("oblique"), size, smooth_function());

@@ -93,7 +93,7 @@ TEST(GridSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue
   }
 }
 
-TEST(GridSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
+TEST(GridSurface, IsBetweenTheDataInFrontAndBehind) {
   const scene::ImageSize small{8, 8};
   Surfaces surfaces;
   surfaces.light = {1, 0, 0, 1};
@@ -195,7 +195,7 @@ TEST(GridSurface, OfWholeNumbersAreFoundInLanesWhereSidesOfVoxelsHaveTheirValue)
   EXPECT_LT(static_cast<double>(frame.statistics.pixels_again), 0.05 * static_cast<double>(frame.statistics.rays));
 }
 
-TEST(GridSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
+TEST(GridSurface, OutsideTheFieldsRangeOrOnTheBoundaryIsEmpty) {
   Surfaces surfaces;
   surfaces.iso = {{-0.1, {}, 1}, {1.1, {}, 1}, {0, {}, 1}};
   const auto source = volume_of(cube(), ramp);
@@ -203,7 +203,7 @@ TEST(GridSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
   for (const float v : image.rgba) EXPECT_EQ(v, 0.0f);
 }
 
-TEST(GridSurface, InAClipsPlaneIsSeenAllOverWhatLiesBelowItsValueAndNowhereAboveIt) {
+TEST(GridSurface, InAClipPlaneIsVisibleExactlyOverLowerValues) {
   Surfaces surfaces;
   surfaces.iso = {{0.3 / 2 + 0.5, glm::dvec3(1), 0.5}};
   surfaces.light = {1, 0, 0, 1};
@@ -337,7 +337,7 @@ Case random_case(unsigned number) {
   return c;
 }
 
-TEST(GridSurface, RandomOnesKeepThePromise) {
+TEST(GridSurface, RandomSurfacesKeepThePromise) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 60);
   const scene::ImageSize small{48, 40};
   double worst = 0;
@@ -367,7 +367,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
 }
 
 /// Vectors of four and eight lanes look up surface values in memory, those of sixteen hold some.
-TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
+TEST(GridSurface, RandomSurfacesKeepThePromiseOnEveryInstructionSet) {
   const scene::ImageSize small{24, 20};
   for_each_instruction_set([&](const std::string& name) {
     for (unsigned number = 0; number < 24; ++number) {

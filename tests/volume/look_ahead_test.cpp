@@ -48,7 +48,7 @@ TEST(NextView, GoesOnTurningMovingAndZoomingAsItDid) {
   expect_near(volume::next_view(start, start), start);
 }
 
-TEST(NextView, TakesAJumpForNoMotion) {
+TEST(NextView, IgnoresJumps) {
   const scene::Camera start = view("perspective"), far = scene::orbit(start, 0.4);
   EXPECT_EQ(volume::next_view(start, far), far);
   EXPECT_EQ(volume::next_view(view("oblique"), start), start);
@@ -184,7 +184,7 @@ TEST(LookAhead, LoadsWhileFramesFollowEachOtherAtOnce) {
       std::chrono::milliseconds(0)));
 }
 
-TEST(LookAhead, ARendererThatGoesEndsIt) {
+TEST(LookAhead, EndsWithItsRenderer) {
   const Volume v = make_volume({65, 65, 65}, Field::smooth);
   const SlowSource slow(*v.source);
   volume::RenderSettings s;

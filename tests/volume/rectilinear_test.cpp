@@ -142,7 +142,7 @@ TEST(Rectilinear, EqualSpacingsGiveTheRegularGridsPicture) {
   }
 }
 
-TEST(Rectilinear, RegionsThreadsAndWhatIsSkippedShowInNoBit) {
+TEST(Rectilinear, RegionsThreadsAndSkippingChangeNoBit) {
   const auto source = graded(50, scene::Association::point, true);
   const scene::Camera camera = view(true, {2, 1.5, 2.5});
   volume::RenderSettings s;

@@ -41,7 +41,7 @@ double hill(double x, double y) {
   return 20 + 2000 * std::exp(-u * u - v * v);
 }
 
-TEST(TileCosts, WhatTilesTookIsWhatTheyAreSaidToCost) {
+TEST(TileCosts, ReportedCostsAreTheMeasuredTimes) {
   const scene::ImageSize size{203, 101};
   std::mt19937 random(5);
   const auto times = tiles_of(size, [&](int, int) { return 1 + random() % 5000; });
@@ -57,7 +57,7 @@ TEST(TileCosts, WhatTilesTookIsWhatTheyAreSaidToCost) {
   EXPECT_NEAR(costs.of({0, 0, size.width, size.height}), all, 1e-5 * all);
 }
 
-TEST(TileCosts, PartsOfATileCostMoreTogetherAndTeachWhatTheWholeCosts) {
+TEST(TileCosts, PartsOfATileCostMoreTogetherAndPredictTheWhole) {
   const scene::ImageSize size{64, 64};
   TileCosts costs(straight(), size, glm::dvec3(0));
   costs.learn(tiles_of(size, [](int, int) { return 1000; }));
@@ -130,7 +130,7 @@ std::vector<double> loads_of(const ImageSplit& split, const TileCosts& costs, co
   return loads;
 }
 
-TEST(BalancedSplit, SharesOutWhatIsThereAndWhatProcessesDoBeside) {
+TEST(BalancedSplit, SharesWorkIncludingOtherWorkOfProcesses) {
   const scene::ImageSize size{512, 384};
   TileCosts costs(straight(), size, glm::dvec3(0));
   for (int n = 0; n < 3; ++n) costs.learn(tiles_of(size, hill));

@@ -87,7 +87,7 @@ const Beginning beginnings[] = {
     {"Abaqus or Ansys input", "*HEADING\nmodel\n"},
 };
 
-TEST_F(Identify, TheBeginningWinsOverTheName) {
+TEST_F(Identify, TheContentDecidesBeforeTheName) {
   for (const Beginning& b : beginnings)
     for (const char* name : {"x", "x.dat", "x.ply", "x.vtu", "x.nrrd", "x.cas"})
       EXPECT_EQ(name_of(name, std::string(b.text)), b.format) << name;
@@ -105,14 +105,14 @@ TEST_F(Identify, ClassicNetCdfIsExodusByItsDimensions) {
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "zspace yspace xspace"), "MINC");
 }
 
-TEST_F(Identify, BinaryStlIsToldByItsSize) {
+TEST_F(Identify, RecognizesBinaryStlByItsSize) {
   std::string text(84 + 50, '\0');
   text[80] = 1;
   EXPECT_EQ(name_of("x.dat", text), "STL");
   EXPECT_EQ(name_of("y.dat", text + '\0'), "");
 }
 
-TEST_F(Identify, TheNameCountsWhereTheBeginningSaysNothing) {
+TEST_F(Identify, TheNameDecidesWhereTheContentDoesNot) {
   EXPECT_EQ(name_of("a.XYZ", "abc"), "PLOT3D");
   EXPECT_EQ(name_of("a.tets", "abc"), "raw tetrahedra");
   EXPECT_EQ(name_of("a.node", "4 3 0 0\n1 0 0 0\n"), "TetGen mesh");
@@ -121,7 +121,7 @@ TEST_F(Identify, TheNameCountsWhereTheBeginningSaysNothing) {
   EXPECT_EQ(name_of("d3plot01", "abc"), "LS-DYNA results");
 }
 
-TEST_F(Identify, WhatIsNotKnownOrNotReadIsTold) {
+TEST_F(Identify, ReportsUnknownAndUnsupportedFormats) {
   EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
             std::string::npos);
   EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("its format (MFEM) is not read"),
@@ -152,7 +152,7 @@ TEST_F(Identify, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
   EXPECT_EQ(message_of([&] { open_volume(header); }), refusal_of(folder / "samples.raw"));
 }
 
-TEST_F(Identify, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
+TEST_F(Identify, AFileThatOnlyHasASolversExtensionIsNotRead) {
   const std::string text = "26 0 0 1\nPATRAN neutral\n";
   EXPECT_NE(message_of([&] { read_mesh(write("x.neu", text)); }).find("it does not begin as a file of GAMBIT does"),
             std::string::npos);
@@ -160,7 +160,7 @@ TEST_F(Identify, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
             std::string::npos);
 }
 
-TEST_F(Identify, AFolderIsACaseOrRefused) {
+TEST_F(Identify, ADirectoryIsACaseOrRefused) {
   std::filesystem::create_directories(folder / "case" / "system");
   EXPECT_NE(message_of([&] { identify(folder / "case"); }).find("it is a directory"), std::string::npos);
   write("case/system/controlDict", "FoamFile\n{\n}\n");

@@ -107,13 +107,13 @@ TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
   expect_bad_input([&] { read_mesh(cube); }, {"points is not a regular file"});
 }
 
-TEST(InputFiles, OtherFilesThatAreNoneAreRefused) {
+TEST(InputFiles, RefusesOtherIrregularFiles) {
   expect_bad_input([] { require_file("/dev/zero"); }, {"not a regular file"});
   expect_bad_input([] { require_file("/proc/self/maps"); }, {"it is empty"});
   expect_bad_input([] { system::PositionalFile(std::string(300, 'y')); }, {"there is no such file"});
 }
 
-TEST(InputFiles, WithoutDescriptorsTheSystemHasFailed) {
+TEST(InputFiles, RunningOutOfDescriptorsIsASystemFailure) {
   const TemporaryFolder folder;
   const auto file = folder.write("m.tets", "some bytes");
   rlimit before{};
@@ -164,7 +164,7 @@ TEST(InputFiles, AWholeFileThatEndsBeforeItsSizeIsAnError) {
   EXPECT_NE(fault.message.find("shortened"), std::string::npos) << fault.message;
 }
 
-TEST(IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
+TEST(IdleWatch, DistinguishesASleepingFromARunningProcess) {
   system::IdleWatch own(::getpid());
   for (int look = 0; look < 3; ++look) EXPECT_EQ(own.look().count(), 0) << "this thread runs";
   const pid_t child = ::fork();

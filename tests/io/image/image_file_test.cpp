@@ -264,7 +264,7 @@ TEST(ImageFile, APngInMemoryIsTheFile) {
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), contents(folder / "a.png"));
 }
 
-TEST(ImageFile, JpegStandsOnBlackUnlessThereIsABackground) {
+TEST(ImageFile, JpegIsOnBlackUnlessThereIsABackground) {
   if (!has_jpeg()) GTEST_SKIP() << "built without libjpeg";
   const TemporaryFolder folder;
   scene::Image image({16, 16});

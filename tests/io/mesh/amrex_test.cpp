@@ -57,7 +57,7 @@ TEST(Amrex, SmoothedItIsContinuousAcrossLevelsAndLinearInside) {
   }
 }
 
-TEST(Amrex, FieldsAreListedAndTheFolderIsToldByItsHeader) {
+TEST(Amrex, ListsFieldsAndIdentifiesTheDirectoryByItsHeader) {
   const test::TemporaryFolder folder;
   const auto plot = write_amrex(folder, nested_blocks(), wavy);
   const cells::MeshFile read = read_mesh(plot);
@@ -75,7 +75,7 @@ TEST(Amrex, FieldsAreListedAndTheFolderIsToldByItsHeader) {
   EXPECT_TRUE(looks_like_amrex("HyperCLaw-V1.1\n2\na\nb\n3\n"));
 }
 
-TEST(Amrex, DamagesAreToldWithTheirPlace) {
+TEST(Amrex, ReportsDamageWithItsPlace) {
   const test::TemporaryFolder folder;
   const auto fault = [&](const std::string& in, const std::string& from, const std::string& to) {
     const auto plot = write_amrex(folder, nested_blocks(), wavy);

@@ -143,7 +143,7 @@ TEST_F(CurvedText, EnSightGold) {
   }
 }
 
-TEST_F(CurvedText, OfEnSight6ANoteStatesThatCornersAreUsed) {
+TEST_F(CurvedText, NotesThatEnSight6CellsUseTheirCorners) {
   if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   for (const bool is_quadratic : {true, false}) {
     const std::vector<glm::dvec3> places = testing::places_of(hex20);
@@ -163,7 +163,7 @@ TEST_F(CurvedText, OfEnSight6ANoteStatesThatCornersAreUsed) {
   }
 }
 
-TEST_F(CurvedText, OfGambitElementsOfSecondOrderAreRefused) {
+TEST_F(CurvedText, RefusesSecondOrderElementsOfGambit) {
   if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const std::vector<glm::dvec3> places = testing::places_of(tet10);
   std::string text =
@@ -234,7 +234,7 @@ std::string universal(const std::vector<glm::dvec3>& points, int type, const std
   return text + "    -1\n";
 }
 
-TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
+TEST_F(CurvedText, IdeasParabolicElementsAlternateCornersAndMidpoints) {
   if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
   // Corners and middles, numbered from 1 as in VTK, in the order of I-DEAS.
   const std::vector<int> of_tet = {1, 5, 2, 6, 3, 7, 8, 9, 10, 4},
@@ -253,7 +253,7 @@ TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
   }
 }
 
-TEST_F(CurvedText, OfIdeasWhatGmshWouldLeaveOutOrMisplaceIsRefused) {
+TEST_F(CurvedText, RefusesIdeasElementsThatGmshOmitsOrMisplaces) {
   if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
   const std::vector<glm::dvec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<glm::dvec3> many(32, glm::dvec3(1));

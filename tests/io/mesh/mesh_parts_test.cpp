@@ -186,7 +186,7 @@ TEST_F(MeshParts, FaultsNameThePiece) {
   EXPECT_NE(message_of([&] { read_in_parts(file, 2, options); }).find("no time step 3"), std::string::npos);
 }
 
-TEST_F(MeshParts, AMalformedListOfPiecesIsTold) {
+TEST_F(MeshParts, ReportsAMalformedListOfPieces) {
   TESSERA_VTK_OR_SKIP();
   const auto file = write_pieces({piece_at(0), piece_at(1)});
   const std::string text = test::contents(file);
@@ -237,7 +237,7 @@ TEST_F(MeshParts, MorePartsThanTetsLeaveSomeEmpty) {
   if (has_reader(Reader::vtk)) expect_as_whole(write_pieces({piece_at(0)}));
 }
 
-TEST_F(MeshParts, NothingLeftIsSaidOnceForAllParts) {
+TEST_F(MeshParts, ReportsOnceForAllPartsThatNothingIsLeft) {
   scene::TetMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.scalars = {1, 2, no_number, 4};

@@ -59,7 +59,7 @@ TEST(PlyFile, EveryTruncationIsRefused) {
       test::expect_bad_input([&] { parse_ply(text.substr(0, size), "s.ply"); }, {"s.ply: "});
 }
 
-TEST(PlyFile, WrongCountsTypesAndIndicesAreTold) {
+TEST(PlyFile, ReportsWrongCountsTypesAndIndices) {
   const auto expect = [](const std::string& from, const std::string& to, const std::string& part) {
     std::string text = ascii;
     ASSERT_NE(text.find(from), std::string::npos);

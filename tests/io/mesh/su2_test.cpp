@@ -23,7 +23,7 @@ std::string tower(const std::string& points_last) {
   return "% a tower\n\nNDIME= 3\n" + (points_last.empty() ? points + cells : cells + points) + markers;
 }
 
-TEST(Su2, AllCellsAreReadWhateverComesFirst) {
+TEST(Su2, AllCellsAreReadInAnyOrderOfSections) {
   const test::TemporaryFolder folder;
   for (const char* points_last : {"", "yes"}) {
     const cells::MeshFile read = read_mesh(folder.write("a.su2", tower(points_last)));
@@ -43,7 +43,7 @@ TEST(Su2, ZonesAreBlocks) {
   EXPECT_EQ(blocks[1].positions.size(), 4u);
 }
 
-TEST(Su2, FaultsAreToldWithTheirLine) {
+TEST(Su2, ReportsFaultsWithTheirLine) {
   const std::string points = "NPOIN= 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
   const auto refuse = [](const std::string& text, const std::vector<std::string>& parts) {
     test::expect_bad_input([&] { parse_su2(text, "a.su2"); }, parts);

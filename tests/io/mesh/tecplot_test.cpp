@@ -232,7 +232,7 @@ TEST_F(Tecplot, BricksWithRepeatedNodesAreWedgesPyramidsAndTetrahedra) {
   EXPECT_EQ(read_mesh(folder.write("a.tec", text), options).counts.cells_tangled, 0u);
 }
 
-TEST_F(Tecplot, PolyhedraHaveTheFacesBesideThem) {
+TEST_F(Tecplot, PolyhedraHaveTheirAdjacentFaces) {
   // Two cubes; one is on each side of their common face.
   const std::string text =
       "VARIABLES=X,Y,Z,f\nZONE NODES=12 ELEMENTS=2 FACES=11 TOTALNUMFACENODES=44 NUMCONNECTEDBOUNDARYFACES=0 "

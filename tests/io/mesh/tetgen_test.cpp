@@ -61,7 +61,7 @@ TEST(NodeEle, SecondOrderNodesAreInTetGensOrder) {
     EXPECT_EQ(point(4 + e), 0.5 * (point(edges[e][0]) + point(edges[e][1]))) << "edge " << e;
 }
 
-TEST(NodeEle, BadTextIsToldByLine) {
+TEST(NodeEle, ReportsBadTextByLine) {
   const auto parse = [](const std::string& node, const std::string& ele) {
     return [=] { parse_node_ele(node, ele, "m.node", "m.ele"); };
   };
@@ -81,7 +81,7 @@ TEST(NodeEle, BadTextIsToldByLine) {
   expect_bad_input(parse(node_text, "1 8 0\n"), {"4 or 10"});
 }
 
-TEST(NodeEle, AMissingPartnerIsTold) {
+TEST(NodeEle, ReportsAMissingPartner) {
   const test::TemporaryFolder folder;
   expect_bad_input([&] { read_mesh(folder.write("m.node", node_text)); }, {"m.ele: there is no such file"});
 }
@@ -244,7 +244,7 @@ TEST_F(Filled, ASmeshTakesItsPointsFromTheNodeFileAndLeavesCavitiesEmpty) {
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("c.smesh", smesh + "0\n")).mesh), 1, 1e-9);
 }
 
-TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
+TEST_F(Filled, ReportsOpenCuttingFlatAndEmptySurfaces) {
   const Sphere s = sphere(12, {0, 0, 0}, 1);
   Sphere open = s;
   open.faces.pop_back();
@@ -285,7 +285,7 @@ TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
   EXPECT_GT(read.mesh.tets.size(), 100u);
 }
 
-TEST_F(Filled, OpenPolyIsTold) {
+TEST_F(Filled, ReportsOpenPolyhedra) {
   std::string text = cube_poly;
   const std::size_t at = text.find("6 0\n1\n4 1 2 3 4\n");
   text.replace(at, 16, "5 0\n");
@@ -300,7 +300,7 @@ std::string box_poly(double x, double y, double z) {
   return text + "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n";
 }
 
-TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
+TEST_F(Filled, RefusesExcessiveTetCountsWithARemedy) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the helper has address space without a limit, for the sanitizer's sake";
 #endif

@@ -28,7 +28,7 @@ scene::TetMesh small() {
   return mesh;
 }
 
-TEST(TetsFile, WhatIsWrittenIsReadBitForBit) {
+TEST(TetsFile, RoundTripsBitForBit) {
   const test::TemporaryFolder folder;
   const scene::TetMesh mesh = small();
   write_tets(mesh, folder / "m.tets");
@@ -90,7 +90,7 @@ TEST(TetsFile, NaNBlanksTheTetsThatUseIt) {
   EXPECT_EQ(read.mesh.original_cell.size(), read.mesh.tets.size());
 }
 
-TEST(VtuWriter, WhatIsWrittenIsReadBitForBit) {
+TEST(VtuWriter, RoundTripsBitForBit) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
   scene::TetMesh mesh = cells::assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
@@ -111,7 +111,7 @@ TEST(VtuWriter, WhatIsWrittenIsReadBitForBit) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"m.vtu"});
 }
 
-TEST(VtuWriter, AFolderThatIsNotThereIsToldAndNothingIsLeft) {
+TEST(VtuWriter, ReportsAMissingDirectoryAndLeavesNothing) {
   const test::TemporaryFolder folder;
   EXPECT_NE(testing::message_of([&] { write_vtu(small(), folder / "none" / "m.vtu"); }), "");
   EXPECT_NE(testing::message_of([&] { write_tets(small(), folder / "none" / "m.tets"); }), "");

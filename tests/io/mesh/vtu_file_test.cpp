@@ -469,7 +469,7 @@ TEST_F(Vtu, TooFewBitsAreRefused) {
   }
 }
 
-TEST_F(Vtu, WordsThatAreNoNumbersAreNamed) {
+TEST_F(Vtu, NamesWordsThatAreNotNumbers) {
   const std::string text = vtu_file_text({}, {one_tet(0, 1)});
   for (const char* word : {"1.5", "1.#QNAN", "3000000000"}) {
     std::string changed = text;
@@ -481,7 +481,7 @@ TEST_F(Vtu, WordsThatAreNoNumbersAreNamed) {
   }
 }
 
-TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
+TEST_F(Vtu, LeavesUnknownContentToVtk) {
   const std::string text = vtu_file_text({}, {one_tet(0, 1)});
   const auto left = [&](const std::string& from, const std::string& to) {
     std::string changed = text;

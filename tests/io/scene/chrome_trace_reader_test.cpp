@@ -50,7 +50,7 @@ TEST(ChromeTraceReader, ReadsBackWhatWasWritten) {
   EXPECT_EQ(file.spans[2].role, TraceRole::compositor);
 }
 
-TEST(ChromeTraceReader, PassesOverWhatIsNotOurs) {
+TEST(ChromeTraceReader, SkipsEventsOfOtherPrograms) {
   const auto file = parse_chrome_trace(
       R"({"stackFrames": {"1": {"cat": "tessera"}}, "traceEvents": [
         {"name": "v8", "cat": "chrome", "ph": "X"}, {"ph": "M", "cat": "tessera"}, 17, [], null,
@@ -73,13 +73,13 @@ TEST(ChromeTraceReader, ACutFileIsRefusedWhereverItWasCut) {
                      {"a.json: line 1", "not valid JSON"});
 }
 
-TEST(ChromeTraceReader, ATraceOfAnotherProgramIsNamedAsSuch) {
+TEST(ChromeTraceReader, ReportsATraceOfAnotherProgram) {
   for (const char* text : {R"({"traceEvents": [{"name": "v8", "cat": "chrome", "ph": "X", "ts": 1, "dur": 2}]})", "{}",
                            "[]", "17", R"({"position": [1, 2, 3]})"})
     expect_bad_input([&] { parse_chrome_trace(text, "a.json"); }, {"a.json: no span of Tessera"});
 }
 
-TEST(ChromeTraceReader, AnEventThatMakesNoSenseIsNamedByItsNumber) {
+TEST(ChromeTraceReader, ReportsInvalidEventsByTheirNumber) {
   const auto with = [](const std::string& from, const std::string& to) {
     std::string event = good;
     event.replace(event.find(from), from.size(), to);
@@ -110,7 +110,7 @@ TEST(ChromeTraceReader, AnEventThatMakesNoSenseIsNamedByItsNumber) {
                    {"a.json", "tets is 1e+40"});
 }
 
-TEST(ChromeTraceReader, DeepNestingAndManyStagesDoNoHarm) {
+TEST(ChromeTraceReader, LimitsNestingAndStages) {
   const std::string deep(100'000, '[');
   expect_bad_input([&] { parse_chrome_trace(deep, "a.json"); }, {"not valid JSON"});
   std::string many = "[";

@@ -28,7 +28,7 @@ json event(const json& events, const std::string& phase, const std::string& name
   return found;
 }
 
-TEST(ChromeTrace, HoldsOneCompleteEventASpanWithAllItKnows) {
+TEST(ChromeTrace, HoldsOneCompleteEventPerSpanWithAllItsData) {
   scene::Trace trace;
   trace.add({"project", 0, 10.5, 20, 19});
   trace.add({"send", 3, 31, 2.25, 2, 6, 5'000'000'000, 12, TraceRole::projector, 41, 2});
@@ -52,7 +52,7 @@ TEST(ChromeTrace, HoldsOneCompleteEventASpanWithAllItKnows) {
                                    {"peer", 2}}));
 }
 
-TEST(ChromeTrace, ThreadsAreNamedByTheRoleTheyHaveIfOnlyOne) {
+TEST(ChromeTrace, ThreadsWithASingleRoleAreNamedByIt) {
   scene::Trace trace;
   trace.add({"project", 0, 0, 1, 1, 0, 0, 0, TraceRole::projector});
   trace.add({"composite", 1, 0, 1, 1, 0, 0, 0, TraceRole::projector});
@@ -65,7 +65,7 @@ TEST(ChromeTrace, ThreadsAreNamedByTheRoleTheyHaveIfOnlyOne) {
             (std::map<int, std::string>{{0, "projector thread 0"}, {1, "thread 1"}, {2, "compositor thread 2"}}));
 }
 
-TEST(ChromeTrace, FramesThatOverlapStandOnTracksBesideEachOther) {
+TEST(ChromeTrace, OverlappingFramesHaveSeparateTracks) {
   scene::Trace trace;
   for (int frame = 0; frame < 4; ++frame)
     trace.add({"frame", 0, 100.0 * frame, 150, 0, frame, 0, 0, TraceRole::compositor});
@@ -121,7 +121,7 @@ TEST(ChromeTrace, AnEmptyTraceAndAForeignNameAreStillJson) {
   event(root.at("traceEvents"), "M", "process_name");
 }
 
-TEST(ChromeTrace, RefusesAFolderThatIsNotThere) {
+TEST(ChromeTrace, RefusesAMissingDirectory) {
   const test::TemporaryFolder folder;
   test::expect_bad_input([&] { write_chrome_trace({}, {}, folder / "none/trace.json"); }, {"none/trace.json"});
 }

@@ -48,7 +48,7 @@ TEST(JsonTransferFunction, TakesTheOptionsOfFilesOfExtinctions) {
                    {"f.json: holds extinctions", "`opacity_points`"});
 }
 
-TEST(JsonTransferFunction, RefusesWhatIsNoFunctionNamingTheKnot) {
+TEST(JsonTransferFunction, RefusesInvalidFunctionsAndNamesTheKnot) {
   const struct {
     const char* text;
     std::vector<std::string> parts;
@@ -66,7 +66,7 @@ TEST(JsonTransferFunction, RefusesWhatIsNoFunctionNamingTheKnot) {
   for (const auto& c : cases) expect_bad_input([&] { parse_json_transfer_function(c.text, "f", {}); }, c.parts);
 }
 
-TEST(JsonTransferFunction, IsTakenInPlaceOfAName) {
+TEST(JsonTransferFunction, IsAcceptedInsteadOfAName) {
   const auto loaded = load_transfer_function(knots_json(stepped()), {});
   EXPECT_TRUE(same(loaded.function, stepped()));
   EXPECT_EQ(loaded.name, "JSON");
@@ -122,7 +122,7 @@ TEST(ParaViewJson, KeepsStepsAndShortensTheUnitDistanceOfDenseFunctions) {
   EXPECT_EQ(back.function.evaluate(1).color, glm::dvec3(0, 0, 1));
 }
 
-TEST(ParaViewJson, RefusesALengthThatIsNone) {
+TEST(ParaViewJson, RefusesAnInvalidLength) {
   for (const double length : {0.0, -1.0, std::nan(""), HUGE_VAL})
     expect_bad_input([&] { color_map_json(stepped(), length, "f"); }, {"`unit_distance`", "a length above 0"});
   expect_bad_input([&] { color_map_json({}, 1, "f"); }, {"no knot"});

@@ -226,7 +226,7 @@ TEST(ParaViewColorMap, UnitDistanceIsTheUsersThenTheFilesThenTheDefault) {
   EXPECT_NEAR(asked.function.max_extinction(), std::log(2.0) / 2, 1e-15);
 }
 
-TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
+TEST(ParaViewColorMap, KeepsValuesUnlessRescaled) {
   colormaps::TransferFunctionOptions options;
   options.field_range = {100, 300};
   const std::string text = R"({"RGBPoints": [0,0,0,0, 1,1,1,1], "Points": [0,0,0.5,0, 4,0.5,0.5,0]})";
@@ -250,14 +250,14 @@ TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
   EXPECT_NEAR(colormaps::encode_srgb(constant.function.evaluate(7).color.x), 0.5, 1e-12);
 }
 
-TEST(ParaViewColorMap, WithoutPointsHasTheDefaultRampAndSaysSo) {
+TEST(ParaViewColorMap, WithoutPointsHasTheDefaultRampWithANote) {
   const auto loaded = parse(map("RGB"));
   EXPECT_NE(loaded.name.find("no Points"), std::string::npos) << loaded.name;
   EXPECT_GT(loaded.function.evaluate(0).extinction, 0);
   EXPECT_GT(loaded.function.evaluate(2).extinction, loaded.function.evaluate(0).extinction);
 }
 
-TEST(ParaViewColorMap, TakesTheFirstOfSeveralAndSaysSo) {
+TEST(ParaViewColorMap, UsesTheFirstOfSeveralWithANote) {
   const auto loaded = parse(R"([{"Name": "A", "RGBPoints": [2,1,0,0]}, {"Name": "B", "RGBPoints": [2,0,1,0]}])");
   EXPECT_EQ(loaded.function.evaluate(2).color.x, 1);
   EXPECT_NE(loaded.name.find("'A'"), std::string::npos) << loaded.name;

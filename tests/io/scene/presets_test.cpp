@@ -68,7 +68,7 @@ TEST(Presets, HaveThePublishedColours) {
   expect_near(high, 0.99324789, 0.90615657, 0.1439362);
 }
 
-TEST(Presets, LightnessOfThePerceptualOnesRises) {
+TEST(Presets, LightnessOfPerceptualPresetsRises) {
   for (const char* name : {"viridis", "plasma", "inferno", "magma", "cividis", "black-body", "gray"}) {
     const auto f = colormaps::preset(name, {}).function;
     double before = -1;

@@ -18,12 +18,12 @@ scene::TransferFunction parse_function(std::string_view text, const colormaps::T
   return parse_text_transfer_function(text, "tf.txt", options).function;
 }
 
-TEST(TextTransferFunction, AFileOfTheSystemsOwnThatCannotBeReadIsNone) {
+TEST(TextTransferFunction, ReportsASystemFileThatCannotBeRead) {
   if (!std::filesystem::exists("/proc/self/mem")) GTEST_SKIP() << "no /proc/self/mem";
   test::expect_bad_input([] { read_text_file("/proc/self/mem"); }, {"cannot be read as text"});
 }
 
-TEST(TextTransferFunction, TakesNumbersAsTheyStand) {
+TEST(TextTransferFunction, UsesNumbersAsGiven) {
   const auto loaded = parse_text_transfer_function("0 0.1 0.2 0.3 0\n10 1 1.5 0 4\n", "tf.txt", {});
   ASSERT_EQ(loaded.function.knots().size(), 2u);
   EXPECT_EQ(loaded.function.knots()[0], (scene::Knot{0, {0.1, 0.2, 0.3}, 0}));
@@ -50,7 +50,7 @@ TEST(TextTransferFunction, OpacityScaleMultipliesExtinction) {
   EXPECT_DOUBLE_EQ(parse_function("0 1 1 1 2\n", options).knots()[0].extinction, 5);
 }
 
-TEST(TextTransferFunction, RefusesWhatIsNotFiveNumbersNamingFileAndLine) {
+TEST(TextTransferFunction, RefusesLinesWithoutFiveNumbersNamingFileAndLine) {
   const std::string_view good = "0 0 0 0 1\n\n# c\n";  // the error is in line 4
   const struct {
     const char* line;
@@ -86,7 +86,7 @@ TEST(TextTransferFunction, RefusesAFileWithoutKnots) {
   expect_bad_input([] { parse_function("# nothing\n\n"); }, {"tf.txt: ", "no knot"});
 }
 
-TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
+TEST(TextTransferFunction, ReportsThatAUnitDistanceDoesNotApply) {
   colormaps::TransferFunctionOptions options;
   options.unit_distance = 2;
   const auto loaded = parse_text_transfer_function("0 1 1 1 3\n", "tf.txt", options);
@@ -108,7 +108,7 @@ TEST(TextTransferFunction, RescalesOnRequest) {
             1);
 }
 
-TEST(TransferFunctionFile, IsToldApartByItsFirstCharacter) {
+TEST(TransferFunctionFile, IsRecognizedByItsFirstCharacter) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(load_transfer_function(folder.write("a.json", "0 1 1 1 2\n"), {}).function.knots().size(), 1u);
   const auto map = load_transfer_function(folder.write("b.txt", "\n [{\"RGBPoints\": [2, 0, 0, 0, 4, 1, 1, 1]}]"), {});
@@ -117,7 +117,7 @@ TEST(TransferFunctionFile, IsToldApartByItsFirstCharacter) {
   expect_bad_input([&] { load_transfer_function(xml, {}); }, {"c.json: is XML", "export it as .json"});
 }
 
-TEST(TransferFunctionFile, RefusesWhatIsNeitherFileNorPreset) {
+TEST(TransferFunctionFile, RefusesNamesOfNeitherFilesNorPresets) {
   expect_bad_input([] { load_transfer_function("no-such-thing", {}); },
                    {"no-such-thing: no such file and no preset", "viridis", "cool-warm"});
   const test::TemporaryFolder folder;

@@ -24,7 +24,7 @@ std::vector<double> times(const std::vector<TimeStep>& steps) {
 using Names = std::vector<std::string>;
 using Times = std::vector<double>;
 
-TEST(TimeSeries, APatternListsTheFilesThereAreByNumber) {
+TEST(TimeSeries, APatternListsExistingFilesByNumber) {
   const test::TemporaryFolder folder;
   for (const char* name : {"m_0010.vtu", "m_0002.vtu", "m_12345.vtu", "m_2.vtu", "m_0003.vtk", "m_00011.vtu", "m_.vtu",
                            "m_-001.vtu", "n_0001.vtu", "m_0001.vtu.old"})
@@ -38,7 +38,7 @@ TEST(TimeSeries, APatternListsTheFilesThereAreByNumber) {
   test::expect_bad_input([&] { read_time_series(folder / "none" / "k_%03d.vtu"); }, {"cannot be listed"});
 }
 
-TEST(TimeSeries, WhatIsOneIsSeenByTheName) {
+TEST(TimeSeries, RecognizesSeriesByTheirNames) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(is_time_series("a/m_%04d.vtu"));
   EXPECT_TRUE(is_time_series("m%d.vtu"));
@@ -99,7 +99,7 @@ TEST(TimeSeries, WithoutTimesAllPartsAreOneStep) {
   EXPECT_EQ(names(steps), (Names{"a.vtu", "b.vtu"}));
 }
 
-TEST(TimeSeries, MalformedPvdsAreToldInOneLine) {
+TEST(TimeSeries, ReportsMalformedPvdsInOneLine) {
   const test::TemporaryFolder folder;
   const auto refused = [&](const std::string& text, const std::string& part) {
     const auto file = folder.write("bad.pvd", text);

@@ -32,7 +32,7 @@ class GzipVolumes : public ::testing::Test {
 const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\nendian: little\nencoding: raw\n\n" +
                          bytes_of(counting<std::int16_t>(24));
 
-TEST_F(GzipVolumes, EveryFormatIsLookedInto) {
+TEST_F(GzipVolumes, ReadsEveryFormat) {
   const std::string meta =
       "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
       bytes_of(counting<std::int16_t>(24));
@@ -68,7 +68,7 @@ TEST_F(GzipVolumes, SeveralMembersAreOneFile) {
             counting<double>(24));
 }
 
-TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
+TEST_F(GzipVolumes, RefusesDamagedFilesByTheirOwnName) {
   const std::string whole = test::contents(write("a.nrrd.gz", nrrd));
   expect_no_volume(folder.write("cut.nrrd.gz", whole.substr(0, whole.size() - 12)), "cut.nrrd.gz: ");
   std::string broken = whole;
@@ -79,7 +79,7 @@ TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
   expect_no_volume(write("text.gz", "no volume"), "does not begin");
 }
 
-TEST_F(GzipVolumes, NothingIsInflatedBehindTheSamplesThatTheHeaderStates) {
+TEST_F(GzipVolumes, InflatesOnlyTheSamplesThatTheHeaderStates) {
   // Data after them takes no memory: a damaged stream there is not even detected.
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
   for (const auto& [name, begin] :
@@ -95,7 +95,7 @@ TEST_F(GzipVolumes, NothingIsInflatedBehindTheSamplesThatTheHeaderStates) {
   }
 }
 
-TEST_F(GzipVolumes, WhatIsOutOfProportionToItsFileIsRefused) {
+TEST_F(GzipVolumes, RefusesContentOutOfProportionToTheFile) {
   const auto zeros = [](int mib) { return std::string(static_cast<std::size_t>(mib) << 20, '\0'); };
   for (const auto& [name, begin] :
        {std::pair{"b.stl.gz", "solid x\n"}, {"b.tets.gz", "x"}, {"b.ply.gz", "ply\nformat ascii 1.0\n"}})
@@ -107,7 +107,7 @@ TEST_F(GzipVolumes, WhatIsOutOfProportionToItsFileIsRefused) {
   EXPECT_EQ(open_volume(mask).source->geometry().points, (scene::GridIndex{256, 256, 1000}));
 }
 
-TEST_F(GzipVolumes, WhatGoesWithOtherFilesIsToBeUnpacked) {
+TEST_F(GzipVolumes, RefusesFormatsOfSeveralFiles) {
   folder.write("d.raw", std::string(64, 'a'));
   const std::string nhdr = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: d.raw\n";
   const std::string mhd =

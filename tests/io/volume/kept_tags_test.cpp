@@ -31,7 +31,7 @@ TEST(KeptTags, AreReadBackFromEveryFormatThatKeepsThem) {
     }
 }
 
-TEST(KeptTags, NothingIsStatedOfWhatIsNotKnown) {
+TEST(KeptTags, UnknownTagsStayUnset) {
   const test::TemporaryFolder folder;
   const VolumeFile volume = open_volume(folder.write("a.nii", test::nifti()));
   for (const char* name : {"a.nrrd", "a.bricks", "a.vti"}) {
@@ -42,7 +42,7 @@ TEST(KeptTags, NothingIsStatedOfWhatIsNotKnown) {
   }
 }
 
-TEST(KeptTags, WordsOfAHeaderWithControlCharactersDoNoHarm) {
+TEST(KeptTags, ControlCharactersInAHeaderDoNoHarm) {
   const test::TemporaryFolder folder;
   const VolumeFile volume = open_volume(folder.write("a.nii", test::nifti()));
   const VolumeTags odd{"C\nT", "\xff\"HU", "m\rm", false};
@@ -57,7 +57,7 @@ TEST(KeptTags, WordsOfAHeaderWithControlCharactersDoNoHarm) {
 
 /// Anatomical axes apply if the header describes a patient or the values are those of CT; otherwise the frame has no
 /// meaning.
-TEST(KeptTags, ANiftiIsAPatientIfItsHeaderOrValuesSaySo) {
+TEST(KeptTags, ANiftiIsAPatientByItsHeaderOrValues) {
   const test::TemporaryFolder folder;
   const auto axes = [&](int code, char unit, std::int16_t low, std::int16_t high) {
     std::string file = test::nifti();

@@ -33,7 +33,7 @@ class NrrdAxes : public ::testing::Test {
 const std::string cube = "dimension: 3\nsizes: 4 3 2\n";
 const std::string placed = cube + "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\nspace: ";
 
-TEST_F(NrrdAxes, EveryNameOfASpaceLeadsWhereItSays) {
+TEST_F(NrrdAxes, EveryNameOfASpaceHasItsDirections) {
   struct Space {
     const char* name;
     BodyAxes axes;
@@ -122,7 +122,7 @@ TEST_F(NrrdAxes, TimesOfASpaceWithTimeAreThoseOfTheFourthDimension) {
   EXPECT_TRUE(times("space: RAST\nkinds: space space space list\n" + directions + "(0,0,0,0.25)").empty());
 }
 
-TEST_F(NrrdAxes, KindsAndDirectionsTellListsComponentsAndTimeApartWhereverTheyAre) {
+TEST_F(NrrdAxes, KindsAndDirectionsDistinguishListsComponentsAndTime) {
   const auto open = [&](const std::string& about, const ReadOptions& options = {}) {
     return open_volume(write(about), options);
   };

@@ -34,7 +34,7 @@ std::string nifti_of(std::int16_t type, int bytes_each, std::int16_t steps = 1) 
   return header + noise(samples * static_cast<std::size_t>(bytes_each) * static_cast<std::size_t>(steps));
 }
 
-TEST_F(StreamedVolumes, OfGzipAreWhatMemoryWouldHold) {
+TEST_F(StreamedVolumes, OfGzipMatchThoseInMemory) {
   EXPECT_TRUE(is_the_same_streamed(zipped("bytes.nii.gz", nifti_of(2, 1))));
   EXPECT_TRUE(is_the_same_streamed(zipped("doubles.nii.gz", nifti_of(64, 8))));
   EXPECT_TRUE(is_the_same_streamed(zipped("steps.nii.gz", nifti_of(4, 2, 3))));

@@ -36,7 +36,7 @@ VtkCase with_axes(VtkCase file, AxesCase axes) {
   return file;
 }
 
-TEST_F(StreamedVtk, AreWhatItsOwnReaderFinds) {
+TEST_F(StreamedVtk, MatchVtksOwnReader) {
   TESSERA_VTK_OR_SKIP();
   // appended, base64, compressed, wide numbers, big endian
   const VtkCase cases[] = {{true, false, false, false, false},
@@ -65,7 +65,7 @@ TEST_F(StreamedVtk, AreWhatItsOwnReaderFinds) {
   }
 }
 
-TEST_F(StreamedVtk, HaveTheCoordinatesThatItsOwnReaderFinds) {
+TEST_F(StreamedVtk, HaveTheCoordinatesOfVtksOwnReader) {
   TESSERA_VTK_OR_SKIP();
   const AxesCase uneven = axes_of("Float64", 1e-3), even = axes_of("Float64", 0);
   const auto as_text = [](AxesCase axes) {
@@ -120,7 +120,7 @@ TEST_F(StreamedVtk, HaveTheCoordinatesThatItsOwnReaderFinds) {
   EXPECT_TRUE(scratch.names().empty());
 }
 
-TEST_F(StreamedVtk, WithOddCoordinatesAreLeftToIt) {
+TEST_F(StreamedVtk, WithUnusualCoordinatesAreLeftToVtk) {
   VtkCase c{true, false, false, true, false, "UInt8"};
   const std::string bytes = noise(samples);
   const auto is_plain = [&](const std::string& text) {
@@ -176,7 +176,7 @@ TEST_F(StreamedVtk, MayEndEachTextWithPadding) {
   EXPECT_EQ(all_samples(*together.source), all_samples(*apart.source));
 }
 
-TEST_F(StreamedVtk, ThatOthersReadComeThroughTheirHelper) {
+TEST_F(StreamedVtk, ThatOtherReadersReadAreStreamedByTheirHelper) {
   TESSERA_VTK_OR_SKIP();
   const VtkCase plain{true, false, false, false, false};
   std::string text = vtk_file(plain, noise(samples * 2));
@@ -237,7 +237,7 @@ TEST_F(StreamedVtk, ThatAreDamagedAnywhereAreReadOrRefused) {
   EXPECT_TRUE(scratch.names().empty());
 }
 
-TEST_F(StreamedVtk, WithDamagedCoordinatesAreWhatItsOwnReaderFinds) {
+TEST_F(StreamedVtk, WithDamagedCoordinatesMatchVtksOwnReader) {
   TESSERA_VTK_OR_SKIP();
   std::mt19937 random(5);
   int refused = 0, plain = 0;

@@ -79,7 +79,7 @@ TEST(VolumeColors, AreRefusedUnlessAComponentOrTheLengthIsAskedFor) {
   }
 }
 
-TEST(VolumeColors, AreNoVectors) {
+TEST(VolumeColors, AreNotVectors) {
   const test::TemporaryFolder folder;
   for (const auto& file :
        {folder.write("v.nrrd", nrrd("uint8", "vector", 3, 1)), folder.write("w.nrrd", nrrd("int16", "3-vector", 3, 2)),

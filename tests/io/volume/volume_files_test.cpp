@@ -84,7 +84,7 @@ TEST_F(VolumeFiles, TheFourPublicVolumesAreReadAsDescribed) {
     EXPECT_NEAR(s[k], std::sqrt(a[k] * a[k] + b[k] * b[k] + c[k] * c[k]), 1e-6 * s[k]);  // rounding of floats
 }
 
-TEST_F(VolumeFiles, MeshOrVolumeIsToldByContentNotByName) {
+TEST_F(VolumeFiles, DistinguishesMeshesFromVolumesByContentNotByName) {
   EXPECT_TRUE(is_volume(folder.write("a.dat", test::nifti())));
   EXPECT_TRUE(is_volume(folder.write("a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\n")));
   EXPECT_TRUE(is_volume(folder.write("b.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n")));
@@ -456,7 +456,7 @@ std::vector<float> wavy_values() {
   return values;
 }
 
-TEST_F(VolumeFiles, WhatIsWrittenReadsBackTheSame) {
+TEST_F(VolumeFiles, RoundTripsUnchanged) {
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
   const auto expected = all_samples(*source);
   for (const std::string& name : names_written()) {
@@ -575,7 +575,7 @@ TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularG
   EXPECT_TRUE(geometry("Float32", "1e6 1000000.125 1000000.1875 1000000.375").rectilinear());
 }
 
-TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
+TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotStore) {
   scene::Grid grid = wavy_grid();
   grid.geometry.coordinates[1] = counting<double>(10);
   const auto rectilinear = scene::MemorySource::of(grid, wavy_values());
