@@ -63,7 +63,7 @@ def main():
         client = server.socket(timeout=600)
         client.state(1, state)
         exact, _ = client.last_frame(1)
-        times, widths, stand_ins = [], [], 0
+        times, widths, previews = [], [], 0
         for number in range(2, options.frames + WARM_UP + 2):
             start = time.monotonic()
             client.state(number, dict(state, camera=turned(state["camera"], number)), moving=True)
@@ -71,7 +71,7 @@ def main():
             if number >= WARM_UP + 2:
                 times.append(1e3 * (time.monotonic() - start))
                 widths.append(header["width"])
-                stand_ins += header["stand_in"]
+                previews += header["preview"]
         times.sort()
         still = []
         for number in range(number + 1, number + 4):
@@ -80,7 +80,7 @@ def main():
         command = server.json("POST", "/api/command", {"state": dict(state, integrator="exact")})["command"]
         server.stop()
     print(f"moving: median {statistics.median(times):.0f} ms, 95 % {times[int(0.95 * len(times))]:.0f} ms, "
-          f"width {statistics.median(widths):.0f} of {exact['width']}, {stand_ins} of {len(times)} stand-ins")
+          f"width {statistics.median(widths):.0f} of {exact['width']}, {previews} of {len(times)} previews")
     print(f"exact at rest: {min(still):.0f} ms; tessera render: {render_ms(options.tessera, command, options.file, launcher):.0f} ms")
 
 

@@ -28,14 +28,14 @@ std::size_t LevelChoice::fitting(std::size_t from, double ms) const {
   return shrinks.size();
 }
 
-void LevelChoice::took(std::size_t shrink, bool stand_in, double ms) {
-  if (stand_in != stand_in_) return;  // measured before the data or the preview changed
+void LevelChoice::took(std::size_t shrink, bool preview, double ms) {
+  if (preview != preview_) return;  // measured before the data or the preview changed
   measured_ = true;
   if (ms > budget_ms_) {
     const std::size_t to = fitting(shrink, ms);
     at_ = std::max(at_, std::min(to, shrinks.size() - 1));
-    if (shrink + 1 == shrinks.size() && !stand_in_) {
-      stand_in_ = true;
+    if (shrink + 1 == shrinks.size() && !preview_) {
+      preview_ = true;
       at_ = 1;
     }
   } else if (shrink == at_ && at_ > 0 && ms * pixels(at_ - 1) / pixels(at_) <= room * budget_ms_) {
@@ -45,10 +45,10 @@ void LevelChoice::took(std::size_t shrink, bool stand_in, double ms) {
 
 void LevelChoice::full_took(double ms) {
   const std::size_t to = fitting(0, ms);
-  if (stand_in_ && to < shrinks.size()) {
-    stand_in_ = false;
+  if (preview_ && to < shrinks.size()) {
+    preview_ = false;
     at_ = to;
-  } else if (!stand_in_ && !measured_) {
+  } else if (!preview_ && !measured_) {
     at_ = std::min(to, shrinks.size() - 1);
   }
 }

@@ -16,18 +16,18 @@ ImageSize shrunk(ImageSize size, double shrink);
 
 /// Chooses the size of a client's images while it moves, from measured times: the largest that meets a budget. Part of
 /// a frame's time depends on the data and does not shrink with the image; so if even the smallest size takes too long,
-/// a preview of the data is used (tessera/coarse_stand_in.hpp).
+/// a preview of the data is used (tessera/coarse_preview.hpp).
 class LevelChoice {
  public:
   explicit LevelChoice(double budget_ms) : budget_ms_(budget_ms) {}
 
   [[nodiscard]] std::size_t shrink() const { return at_; }
-  [[nodiscard]] bool wants_stand_in() const { return stand_in_; }
+  [[nodiscard]] bool wants_preview() const { return preview_; }
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
 
-  /// Records the time of a frame from the event until the client reported it as painted. `stand_in`: it showed the
+  /// Records the time of a frame from the event until the client reported it as painted. `preview`: it showed the
   /// preview.
-  void took(std::size_t shrink, bool stand_in, double ms);
+  void took(std::size_t shrink, bool preview, double ms);
   /// Records the rendering time of an image in full size: the only measurement before anything moves, or after the data
   /// changed.
   void full_took(double ms);
@@ -38,7 +38,7 @@ class LevelChoice {
 
   double budget_ms_;
   std::size_t at_ = 2;
-  bool stand_in_ = false, measured_ = false;
+  bool preview_ = false, measured_ = false;
 };
 
 }  // namespace tessera::server

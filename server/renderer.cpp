@@ -254,9 +254,9 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   if (order.level == Level::moving) view.size = shrunk(view.size, shrinks.at(order.shrink));
   const LoadedTransferFunction& loaded = stage_.function(*held, *scene);
   FrameProgress progress(order, queue_, view.size);
-  const bool stand_in = order.level == Level::moving && order.stand_in && stage_.has_stand_in(state, held);
-  RenderedFrame rendered = stand_in ? stage_.render_stand_in(*scene, *held, view, &progress, order.stop.get_token())
-                                    : stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
+  const bool preview = order.level == Level::moving && order.preview && stage_.has_preview(state, held);
+  RenderedFrame rendered = preview ? stage_.render_preview(*scene, *held, view, &progress, order.stop.get_token())
+                                   : stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
   if (rendered.stopped || order.stop.stop_requested()) {
     outcome.kind = FrameOutcome::Kind::stopped;
     return outcome;
@@ -273,7 +273,7 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
       {"frame", ++frames_},
       {"number", order.number},
       {"level", level_name(outcome.level)},
-      {"stand_in", stand_in},
+      {"preview", preview},
       {"width", view.size.width},
       {"height", view.size.height},
       {"mime", media_type(format)},
@@ -281,11 +281,11 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
       {"encode_ms", ms_between(rendered_at, Clock::now())},
       {"promised_error", nullptr},
       {"final", outcome.level == Level::exact},
-      {"stages", stand_in ? std::map<std::string, double>{} : stage_.stage_times(rendered.statistics.milliseconds)},
+      {"stages", preview ? std::map<std::string, double>{} : stage_.stage_times(rendered.statistics.milliseconds)},
       {"field", held->data.field_name()},
       {"range", range},
       {"warnings", loaded.warnings}};
-  if (const auto promised = stand_in ? std::nullopt : stage_.session(state, *scene, *held).promised_error())
+  if (const auto promised = preview ? std::nullopt : stage_.session(state, *scene, *held).promised_error())
     header["promised_error"] = *promised;
   queue_.begin_sending(order, frames_);
   order.channel->send_frame(frame_head(header), bytes);

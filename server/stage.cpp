@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "server/stage_times.hpp"
-#include "tessera/coarse_stand_in.hpp"
+#include "tessera/coarse_preview.hpp"
 
 namespace tessera::server {
 namespace {
@@ -225,11 +225,11 @@ const LoadedTransferFunction& Stage::function(HeldData& held, const Scene& scene
   return held.functions.emplace(scene.look_key(), std::move(function)).first->second;
 }
 
-RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
-                                     const std::stop_token& stop) {
+RenderedFrame Stage::render_preview(const Scene& scene, HeldData& held, const View& view, Sink* sink,
+                                    const std::stop_token& stop) {
   const LoadedTransferFunction& loaded = function(held, scene);
-  const std::string key = scene.settings_key() + " stand-in";
-  if (held.stand_in_key != key || !held.stand_in_session) {
+  const std::string key = scene.settings_key() + " preview";
+  if (held.preview_key != key || !held.preview_session) {
     Settings settings = scene.settings(held.data, loaded);
     settings.surfaces.boundary.clear();
     settings.surfaces.triangles.clear();
@@ -242,49 +242,49 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
     }
     if (settings.mesh.shading) settings.grid.shading = settings.mesh.shading;
     settings.mesh = {};
-    held.stand_in_session.reset();
-    held.stand_in_session = std::make_unique<Session>(*held.stand_in, settings);
-    held.stand_in_key = key;
+    held.preview_session.reset();
+    held.preview_session = std::make_unique<Session>(*held.preview, settings);
+    held.preview_key = key;
   }
-  return held.stand_in_session->render(view, loaded.function, {}, sink, stop);
+  return held.preview_session->render(view, loaded.function, {}, sink, stop);
 }
 
-void Stage::make_stand_in_together(const Json& state, HeldData& held) {
-  held.stand_in_tried = true;
+void Stage::make_preview_together(const Json& state, HeldData& held) {
+  held.preview_tried = true;
   const bool is_first = job_.rank() == 0;
   if (held.data.is_grid() && !is_first) return;  // for a grid every rank has all samples
-  tell({{"do", "stand_in"}, {"state", state}});
+  tell({{"do", "preview"}, {"state", state}});
   try {
-    std::optional<Dataset> made = coarse_stand_in(held.data, {}, {}, job_.communicator());
-    if (is_first) held.stand_in = std::move(made);
+    std::optional<Dataset> made = coarse_preview(held.data, {}, {}, job_.communicator());
+    if (is_first) held.preview = std::move(made);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_input) throw;  // otherwise there is no preview
   }
 }
 
-bool Stage::has_stand_in(const Json& state, const std::shared_ptr<HeldData>& held) {
-  if (held->stand_in) return true;
+bool Stage::has_preview(const Json& state, const std::shared_ptr<HeldData>& held) {
+  if (held->preview) return true;
   if (ranks() > 1) {
-    if (!held->stand_in_tried) make_stand_in_together(state, *held);
-    return held->stand_in.has_value();
+    if (!held->preview_tried) make_preview_together(state, *held);
+    return held->preview.has_value();
   }
   {
     const std::lock_guard lock(mutex_);
     if (making_ != nullptr) return false;
     if (made_) {
-      made_->held->stand_in = std::move(made_->data);
+      made_->held->preview = std::move(made_->data);
       made_.reset();
-      if (held->stand_in) return true;
+      if (held->preview) return true;
     }
-    if (held->stand_in_tried) return false;
+    if (held->preview_tried) return false;
     making_ = held.get();
   }
-  held->stand_in_tried = true;
+  held->preview_tried = true;
   if (making_thread_.joinable()) making_thread_.join();  // the last thread, which has finished
   making_thread_ = std::thread([this, held, stop = stop_making_.get_token()] {
     std::optional<Dataset> data;
     try {
-      data = coarse_stand_in(held->data, {}, stop);
+      data = coarse_preview(held->data, {}, stop);
     } catch (...) {  // in that case there is no preview
       data.reset();
     }
@@ -405,7 +405,7 @@ void Stage::obey(const Json& order) {
   }
   const auto held = find(*scene);
   if (!held) throw Error(ErrorCode::system_failure, "server", "this rank has other data than the first", "report this");
-  if (order.at("do") == "stand_in") return make_stand_in_together(state, *held);
+  if (order.at("do") == "preview") return make_preview_together(state, *held);
   View view = scene->view(held->data);
   if (order.at("do") == "probe") {
     probe(state, *scene, *held, view, {order.at("x").get<int>(), order.at("y").get<int>()},

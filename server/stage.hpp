@@ -27,10 +27,10 @@ struct HeldData {
   Dataset data;
   std::uint64_t bytes = 0;                                  ///< approximate size in memory
   std::map<std::string, LoadedTransferFunction> functions;  ///< by Scene::look_key(), a few
-  std::optional<Dataset> stand_in;                          ///< tessera/coarse_stand_in.hpp
-  bool stand_in_tried = false;
-  std::unique_ptr<Session> stand_in_session;
-  std::string stand_in_key;
+  std::optional<Dataset> preview;                           ///< tessera/coarse_preview.hpp
+  bool preview_tried = false;
+  std::unique_ptr<Session> preview_session;
+  std::string preview_key;
 };
 
 /// Frames of one scene, for long work.
@@ -85,12 +85,12 @@ class Stage {
                                       const std::shared_ptr<HeldData>& held, ImageSize size);
   /// The times of that frame's stages: their shares of its time. On several ranks those of this one.
   std::map<std::string, double> stage_times(double frame_ms);
-  /// Whether there is a preview (tessera/coarse_stand_in.hpp) of the scene's data. The first call starts making it; on
+  /// Whether there is a preview (tessera/coarse_preview.hpp) of the scene's data. The first call starts making it; on
   /// several ranks all make it before the call returns.
-  bool has_stand_in(const Json& state, const std::shared_ptr<HeldData>& held);
+  bool has_preview(const Json& state, const std::shared_ptr<HeldData>& held);
   /// An image of the preview, without surfaces of meshes, rendered by this process alone.
-  RenderedFrame render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
-                                const std::stop_token& stop);
+  RenderedFrame render_preview(const Scene& scene, HeldData& held, const View& view, Sink* sink,
+                               const std::stop_token& stop);
   /// The session of the scene's last image.
   Session& session(const Json& state, const Scene& scene, HeldData& held);
 
@@ -127,7 +127,7 @@ class Stage {
   void drop(const std::string& key);
   [[nodiscard]] Settings session_settings(const Scene& scene, HeldData& held);
   void read_in_background(std::shared_ptr<const Scene> scene);
-  void make_stand_in_together(const Json& state, HeldData& held);
+  void make_preview_together(const Json& state, HeldData& held);
   /// Throws Error(bad_input) for a size that needs too much memory.
   void check_size(ImageSize size) const;
   Dataset open_together(const Scene& scene);

@@ -55,7 +55,7 @@ void WorkQueue::acknowledge(ClientId client, std::uint64_t frame) {
   Client& c = found->second;
   if (!c.unacknowledged || c.unacknowledged->frame != frame) return;
   if (c.unacknowledged->level == Level::moving)
-    c.levels.took(c.unacknowledged->shrink, c.unacknowledged->stand_in, ms_since(c.unacknowledged->event));
+    c.levels.took(c.unacknowledged->shrink, c.unacknowledged->preview, ms_since(c.unacknowledged->event));
   c.unacknowledged.reset();
   changed_.notify_one();
 }
@@ -105,7 +105,7 @@ std::optional<FrameOrder> WorkQueue::next_frame() {
     order.number = c.state->number;
     order.level = *level;
     order.shrink = c.levels.shrink();
-    order.stand_in = c.levels.wants_stand_in();
+    order.preview = c.levels.wants_preview();
     order.event = c.event;
     c.working = order.stop;
     c.working_level = *level;
@@ -139,7 +139,7 @@ void WorkQueue::begin_sending(const FrameOrder& order, std::uint64_t frame) {
   const std::lock_guard lock(mutex_);
   const auto found = clients_.find(order.client);
   if (found == clients_.end()) return;
-  found->second.unacknowledged = Client::Sent{frame, order.level, order.shrink, order.stand_in, order.event};
+  found->second.unacknowledged = Client::Sent{frame, order.level, order.shrink, order.preview, order.event};
 }
 
 void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
@@ -159,7 +159,7 @@ void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
     // A state that has arrived since then may need other data.
     c.waits = c.state && c.state->number == order.number && wakes_ == wakes_before_turn_;
   } else if (order.level == Level::moving) {
-    c.levels.took(order.shrink, order.stand_in, 1.5 * ms_since(c.working_since));
+    c.levels.took(order.shrink, order.preview, 1.5 * ms_since(c.working_since));
   }
 }
 

@@ -32,7 +32,7 @@ struct FrameOrder {
   std::uint64_t number = 0;
   Level level = Level::moving;
   std::size_t shrink = 0;   ///< moving: index into `shrinks`
-  bool stand_in = false;    ///< moving: shows the preview, as the data take too long
+  bool preview = false;     ///< moving: shows the preview, as the data take too long
   Clock::time_point event;  ///< when the state arrived
   std::stop_source stop;    ///< requests a stop when the client has another state
 };
@@ -112,7 +112,7 @@ class WorkQueue {
       std::uint64_t frame;
       Level level;
       std::size_t shrink;
-      bool stand_in;
+      bool preview;
       Clock::time_point event;
     };
     std::optional<Sent> unacknowledged;

@@ -6,7 +6,7 @@
 #include "tessera/array.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/cell_type.hpp"
-#include "tessera/coarse_stand_in.hpp"
+#include "tessera/coarse_preview.hpp"
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"

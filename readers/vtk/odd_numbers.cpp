@@ -26,12 +26,12 @@ namespace tessera::readers {
 namespace {
 
 /// Placeholders: floats, so that arrays of floats represent them exactly.
-struct StandIn {
+struct Substitute {
   double number, meant;
 };
-constexpr std::array<StandIn, 3> stand_ins{{{0x1.5a5a5ap-63, std::numeric_limits<double>::quiet_NaN()},
-                                            {0x1.6b6b6cp-63, std::numeric_limits<double>::infinity()},
-                                            {-0x1.6b6b6cp-63, -std::numeric_limits<double>::infinity()}}};
+constexpr std::array<Substitute, 3> substitutes{{{0x1.5a5a5ap-63, std::numeric_limits<double>::quiet_NaN()},
+                                                 {0x1.6b6b6cp-63, std::numeric_limits<double>::infinity()},
+                                                 {-0x1.6b6b6cp-63, -std::numeric_limits<double>::infinity()}}};
 
 bool is_number(std::string_view word) {
   return is_digit(word.front()) || word.front() == '.' ||
@@ -39,14 +39,14 @@ bool is_number(std::string_view word) {
 }
 
 /// The placeholder for a word; null if it needs none.
-const StandIn* stand_in_of(std::string_view word) {
+const Substitute* substitute_of(std::string_view word) {
   std::string lower = lower_case(word.substr(0, 12));
   const bool is_negative = lower.front() == '-';
   if (is_negative || lower.front() == '+') lower.erase(0, 1);
   if (lower == "nan" || lower.starts_with("nan(") || lower.starts_with("1.#qnan") || lower.starts_with("1.#snan") ||
       lower.starts_with("1.#ind"))
-    return stand_ins.data();
-  if (lower == "inf" || lower == "infinity" || lower.starts_with("1.#inf")) return &stand_ins[is_negative ? 2 : 1];
+    return substitutes.data();
+  if (lower == "inf" || lower == "infinity" || lower.starts_with("1.#inf")) return &substitutes[is_negative ? 2 : 1];
   return nullptr;
 }
 
@@ -55,7 +55,7 @@ std::string replaced(std::string_view line) {
   std::string result;
   bool any = false;
   for (const std::string_view word : split_words(line)) {
-    const StandIn* const odd = stand_in_of(word);
+    const Substitute* const odd = substitute_of(word);
     if (odd == nullptr && !is_number(word)) return "";
     any = any || odd != nullptr;
     result += odd == nullptr ? std::string(word) : fmt::format("{:.17g}", odd->number);
@@ -68,7 +68,7 @@ void restore_array(vtkDataArray* array) {
   if (array == nullptr || (array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE)) return;
   for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
     for (int k = 0; k < array->GetNumberOfComponents(); ++k)
-      for (const StandIn& odd : stand_ins)
+      for (const Substitute& odd : substitutes)
         if (array->GetComponent(tuple, k) == odd.number) array->SetComponent(tuple, k, odd.meant);
 }
 

@@ -488,7 +488,7 @@ document.addEventListener("keydown", (event) => {
 // For scripts and tests: what the page shows, and its latencies.
 Object.assign(window, {
   tessera: {
-    state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: (/** @type {boolean | undefined} */ stand_in) => status.latencies(stand_in),
+    state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: (/** @type {boolean | undefined} */ preview) => status.latencies(preview),
     change: (/** @type {import("./types.js").State} */ state) => history.change(state), undo: () => history.undo(), link: () => picture_panel.link(), copied: () => picture_panel.copied, sent: () => sender.number,
     connection, is_answered: () => functions.is_answered,
     at_rest: () => page.ready && !history.moving && !sender.waiting && sender.number > 0 && document.body.dataset.shown === `${sender.number} exact final`,

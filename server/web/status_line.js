@@ -26,7 +26,7 @@ export class StatusLine {
     this.verdict = element("span", { class: "verdict", role: "status" });
     this.stages = by_id("stages");
     by_id("status").append(this.level, this.size, this.time, this.error, this.latency, this.verdict, this.verify);
-    /** For each frame while moving: milliseconds from the event that caused its state to its painting. @type {{ latency: number, stand_in: boolean }[]} */
+    /** For each frame while moving: milliseconds from the event that caused its state to its painting. @type {{ latency: number, preview: boolean }[]} */
     this.moving_latencies = [];
     /** @type {FrameHeader | undefined} */
     this.header = undefined;
@@ -39,13 +39,13 @@ export class StatusLine {
     const part = header.width < full.width ? ` 1/${short_number(full.width / header.width, 2)}` : "";
     this.level.textContent = header.level === "moving" ? `moving${part}` : header.level === "exact" ? "exact" : "refining";
     this.level.dataset.level = header.level;
-    if (header.stand_in) this.level.textContent += ", stand-in";
+    if (header.preview) this.level.textContent += ", preview";
     this.size.textContent = `${header.width} × ${header.height}`;
     this.time.textContent = short_time(header.milliseconds);
-    this.error.textContent = header.promised_error ? `error ≤ ${short_number(header.promised_error, 2)}` : header.stand_in ? "no error promised" : "";
+    this.error.textContent = header.promised_error ? `error ≤ ${short_number(header.promised_error, 2)}` : header.preview ? "no error promised" : "";
     if (header.level === "moving") {
       if (latency !== undefined) {
-        this.moving_latencies.push({ latency, stand_in: header.stand_in === true });
+        this.moving_latencies.push({ latency, preview: header.preview === true });
         if (this.moving_latencies.length > most_latencies) this.moving_latencies.shift();
       }
     } else {
@@ -64,9 +64,9 @@ export class StatusLine {
     }
   }
 
-  /** Latencies of frames while moving; optionally only those of previews, or only those of the data themselves. @param {boolean} [stand_in] */
-  latencies(stand_in) {
-    const meant = this.moving_latencies.filter((frame) => stand_in === undefined || frame.stand_in === stand_in);
+  /** Latencies of frames while moving; optionally only those of previews, or only those of the data themselves. @param {boolean} [preview] */
+  latencies(preview) {
+    const meant = this.moving_latencies.filter((frame) => preview === undefined || frame.preview === preview);
     return median_and_95(meant.map((frame) => frame.latency));
   }
 

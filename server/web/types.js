@@ -78,7 +78,7 @@
  * @property {number} frame
  * @property {number} number the state's
  * @property {"moving"|"auto"|"exact"} level
- * @property {boolean} [stand_in]
+ * @property {boolean} [preview]
  * @property {number} width
  * @property {number} height
  * @property {string} mime

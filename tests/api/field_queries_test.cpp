@@ -11,7 +11,7 @@
 #include "datasets/modify.hpp"
 #include "scene/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "tessera/coarse_stand_in.hpp"
+#include "tessera/coarse_preview.hpp"
 #include "tessera/session.hpp"
 #include "tessera/write.hpp"
 
@@ -251,7 +251,7 @@ TEST(Probe, OfAClippedGridEndsAtThePlane) {
   ReadOptions options;
   options.selection.clip = {{{0.25, 0, 0}, {-1, 0, 0}}, {{0, 0, 0.5}, {0.2, 0, -1}}};
   const Dataset data = Dataset::open(folder / "x.nrrd", options);
-  const std::optional<Dataset> coarse = coarse_stand_in(data, {.samples = 20 * 20 * 20});
+  const std::optional<Dataset> coarse = coarse_preview(data, {.samples = 20 * 20 * 20});
   ASSERT_TRUE(coarse);
   EXPECT_EQ(coarse->bounds(), data.bounds());
   for (const Dataset& asked : {data, *coarse}) {
@@ -298,13 +298,13 @@ TEST(Probe, IncludesRanksWithoutCells) {
     const Dataset data = Dataset::of(datasets::arrays_of(mesh));
     const View view = data.default_view({9, 9});
     const RayProbe alone = probe(data, view, soft, {4, 4}, 9);
-    const Dataset coarse = *coarse_stand_in(data, {.samples = 1000});
+    const Dataset coarse = *coarse_preview(data, {.samples = 1000});
     run_ranks(4, [&](const Communicator& communicator) {
       const Dataset part = part_of(mesh, communicator);
       const RayProbe found = probe(part, view, soft, {4, 4}, 9, {}, communicator);
       EXPECT_EQ(found.pixel.a, alone.pixel.a);
       EXPECT_EQ(found.opacity, alone.opacity);
-      EXPECT_EQ(coarse_stand_in(part, {.samples = 1000}, {}, communicator)->range(), coarse.range());
+      EXPECT_EQ(coarse_preview(part, {.samples = 1000}, {}, communicator)->range(), coarse.range());
       EXPECT_EQ(histogram(part, {.bins = 3}).shares, histogram(data, {.bins = 3}).shares);
     });
   }

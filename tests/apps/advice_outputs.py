@@ -11,7 +11,7 @@ V = "render v.vti -o a.png --size 16x16 "
 
 # A fake ffmpeg in the directory, which stores its input, and the commands that its shell needs.
 FFMPEG = {"PATH": ".:/usr/bin:/bin"}
-STAND_IN = {"ffmpeg": ("program", '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')}
+FAKE_FFMPEG = {"ffmpeg": ("program", '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')}
 VIEW = (
     '{{"position": [0, 0, 9], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "parallel_scale": 2, "size": [{0}, {0}]}}'
 )
@@ -109,21 +109,21 @@ ROWS = [
         "render m.vtu -o a.gif --size 16x16 --frame-rate 2000",
         "is above 1000; give fewer",
         "render m.vtu -o a.gif --size 16x16 --frame-rate 20",
-        STAND_IN,
+        FAKE_FFMPEG,
         env=FFMPEG,
     ),
     row(
         "render m.vtu -o a.gif --size 16x16 --frame-rate 1e-300",
         "is below 0.01; give more",
         "render m.vtu -o a.gif --size 16x16 --frame-rate 0.01",
-        STAND_IN,
+        FAKE_FFMPEG,
         env=FFMPEG,
     ),
     row(
         "render m.vtu -o a.gif --camera cc.json",
         "use --size",
         "render m.vtu -o a.gif --camera cc.json --size 16x16",
-        {"cc.json": CAMERAS, **STAND_IN},
+        {"cc.json": CAMERAS, **FAKE_FFMPEG},
         env=FFMPEG,
     ),
     row("convert v.vti w.raw", "read it with --dims 8x8x8 --type", "info w.raw --dims 8x8x8 --type float32"),

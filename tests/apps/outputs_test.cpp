@@ -15,17 +15,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Makes a fake ffmpeg the only one on PATH (with the commands that a shell script needs) during its lifetime.
-class StandIn {
+class FakeProgram {
  public:
-  explicit StandIn(const Folder& folder, const std::string& script) : path_(std::getenv("PATH")) {
+  explicit FakeProgram(const Folder& folder, const std::string& script) : path_(std::getenv("PATH")) {
     fs::create_directory(folder / "bin");
     const std::string program = folder.file("bin/ffmpeg", "#!/bin/sh\n" + script);
     fs::permissions(program, fs::perms::owner_all);
     ::setenv("PATH", (folder / "bin:/usr/bin:/bin").c_str(), 1);
   }
-  ~StandIn() { ::setenv("PATH", path_.c_str(), 1); }
-  StandIn(const StandIn&) = delete;
-  StandIn& operator=(const StandIn&) = delete;
+  ~FakeProgram() { ::setenv("PATH", path_.c_str(), 1); }
+  FakeProgram(const FakeProgram&) = delete;
+  FakeProgram& operator=(const FakeProgram&) = delete;
 
  private:
   std::string path_;
@@ -37,7 +37,7 @@ const char* const keeps = "for last; do :; done\nexec cat > \"$last\"\n";
 TEST(Outputs, AFilmIsAllFramesInOneFile) {
   const Folder folder;
   const std::string mesh = folder.cube();
-  const StandIn ffmpeg(folder, keeps);
+  const FakeProgram ffmpeg(folder, keeps);
   const Outcome run = tessera({"render", mesh, "-o", folder / "a.mp4", "--orbit", "3", "--size", "20x10", "--quiet"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(fs::file_size(folder / "a.mp4"), 3u * 20 * 10 * 3);
@@ -46,7 +46,7 @@ TEST(Outputs, AFilmIsAllFramesInOneFile) {
 TEST(Outputs, AFilmAloneIsAnnotated) {
   const Folder folder;
   const std::string mesh = folder.cube();
-  const StandIn ffmpeg(folder, keeps);
+  const FakeProgram ffmpeg(folder, keeps);
   const auto film = [&](const std::vector<std::string>& more) {
     const Outcome run =
         tessera(joined({"render", mesh, "-o", folder / "a.mp4", "--orbit", "2", "--size", "200x150"}, more));
@@ -61,7 +61,7 @@ TEST(Outputs, AFilmAloneIsAnnotated) {
 TEST(Outputs, AFailedFilmLeavesNothingAndReportsTheReason) {
   const Folder folder;
   const std::string mesh = folder.cube();
-  const StandIn ffmpeg(folder, "head -c 100 > /dev/null\necho 'no such encoder' >&2\nexit 1\n");
+  const FakeProgram ffmpeg(folder, "head -c 100 > /dev/null\necho 'no such encoder' >&2\nexit 1\n");
   const Outcome run = tessera({"render", mesh, "-o", folder / "a.mp4", "--orbit", "9", "--size", "200x100", "--quiet"});
   EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.error_lines(), 1u);

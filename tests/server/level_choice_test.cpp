@@ -13,7 +13,7 @@ struct Cost {
 };
 
 void move(LevelChoice& choice, const Cost& cost, int frames) {
-  for (int i = 0; i < frames; ++i) choice.took(choice.shrink(), choice.wants_stand_in(), cost.at(choice.shrink()));
+  for (int i = 0; i < frames; ++i) choice.took(choice.shrink(), choice.wants_preview(), cost.at(choice.shrink()));
 }
 
 TEST(LevelChoice, FindsTheLargestPictureWithinTheBudget) {
@@ -21,7 +21,7 @@ TEST(LevelChoice, FindsTheLargestPictureWithinTheBudget) {
     LevelChoice choice(100);
     move(choice, cost, 30);
     EXPECT_LE(cost.at(choice.shrink()), 100);
-    EXPECT_FALSE(choice.wants_stand_in());
+    EXPECT_FALSE(choice.wants_preview());
     if (choice.shrink() > 0) {
       EXPECT_GT(cost.at(choice.shrink() - 1), 85) << cost.full;
     }
@@ -39,19 +39,19 @@ TEST(LevelChoice, ConvergesAndStays) {
   }
 }
 
-TEST(LevelChoice, RequestsACoarseVersionWhereTheDataTakeTooLong) {
+TEST(LevelChoice, RequestsAPreviewWhereTheDataTakeTooLong) {
   LevelChoice choice(100);
   const Cost slow{200, 300}, quick{5, 60};
   move(choice, slow, 10);
-  ASSERT_TRUE(choice.wants_stand_in());
+  ASSERT_TRUE(choice.wants_preview());
   move(choice, quick, 10);
-  EXPECT_TRUE(choice.wants_stand_in());
+  EXPECT_TRUE(choice.wants_preview());
   EXPECT_EQ(choice.shrink(), 0u);
   // At rest, the full data may turn out to be fast enough.
   choice.full_took(slow.at(0));
-  EXPECT_TRUE(choice.wants_stand_in());
+  EXPECT_TRUE(choice.wants_preview());
   choice.full_took(80);
-  EXPECT_FALSE(choice.wants_stand_in());
+  EXPECT_FALSE(choice.wants_preview());
 }
 
 TEST(LevelChoice, BeginsByWhatTheFirstPictureTook) {

@@ -217,19 +217,19 @@ def stand_in_of(file, launcher=()):
         client = server.socket()
         number, given_up = 0, time.monotonic() + HANG
         header = None
-        while header is None or not header["stand_in"]:
-            check(time.monotonic() < given_up, f"{file.name}: no stand-in in {number} frames")
+        while header is None or not header["preview"]:
+            check(time.monotonic() < given_up, f"{file.name}: no preview in {number} frames")
             number += 1
             client.state(number, dict(state, azimuth=str(number % 360)), moving=True)
             header, image = client.frame(acknowledge=False)
-            check(number > 1 or not header["stand_in"], f"{file.name}: a stand-in where nothing was measured yet")
+            check(number > 1 or not header["preview"], f"{file.name}: a preview where nothing was measured yet")
             time.sleep(0.01)  # including the client's time to paint it, no frame arrives within a millisecond
             client.send({"type": "ack", "frame": header["frame"]})
-        check(image.startswith(b"\xff\xd8"), "a stand-in that is not a JPEG")
+        check(image.startswith(b"\xff\xd8"), "a preview that is not a JPEG")
         number += 1
         client.state(number, state)
         header, _ = client.last_frame(number)
-        check(header["final"] and not header["stand_in"], header)
+        check(header["final"] and not header["preview"], header)
         check(header["stages"] and abs(sum(header["stages"].values()) - header["milliseconds"]) < 1, header)
 
 

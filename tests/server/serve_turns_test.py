@@ -27,7 +27,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 MPIRUN = ["mpirun", "--oversubscribe", "-n", "2"]
 
 options = None
-with_stand_in = None  # an environment with a fake ffmpeg, whose film is the sequence of images received
+with_fake_ffmpeg = None  # an environment with a fake ffmpeg, whose film is the sequence of images received
 
 
 def check(holds, words):
@@ -78,7 +78,7 @@ def film_in_work(server, state, frames=10_000):
 
 
 def views_go_on(file):
-    with Server(options.tessera, file, environment=with_stand_in) as server:
+    with Server(options.tessera, file, environment=with_fake_ffmpeg) as server:
         state = dict(server.data()["defaults"], size="64x48")
         client = server.socket()
         client.receive()
@@ -148,7 +148,7 @@ def sockets_of(process):
 def films_leave_nothing(file):
     for how in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGKILL):
         with tempfile.TemporaryDirectory() as scratch, \
-                Server(options.tessera, file, environment=dict(with_stand_in, TMPDIR=scratch)) as server:
+                Server(options.tessera, file, environment=dict(with_fake_ffmpeg, TMPDIR=scratch)) as server:
             state = dict(server.data()["defaults"], size="64x48")
             status, _, film = server.ask("POST", "/film", {"state": state, "orbit": 2, "format": "mp4"})
             check(status == 200 and len(film) == 2 * 3 * 64 * 48, f"{status}, {len(film)} bytes")
@@ -226,7 +226,7 @@ def stopped_ranks_are_named(file):
 
 
 def main():
-    global options, with_stand_in
+    global options, with_fake_ffmpeg
     parser = argparse.ArgumentParser()
     parser.add_argument("--tessera", required=True)
     parser.add_argument("--without-mpi", action="store_true")
@@ -235,10 +235,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "ball.vtu"
         subprocess.run([options.tessera, "generate", "ball", file, "levels=3"], capture_output=True, check=True)
-        stand_in = Path(folder) / "ffmpeg"
-        stand_in.write_text("#!/bin/sh\nfor output; do :; done\ncat > \"$output\"\n")
-        stand_in.chmod(0o755)
-        with_stand_in = {"PATH": f"{folder}:{os.environ['PATH']}"}
+        fake_ffmpeg = Path(folder) / "ffmpeg"
+        fake_ffmpeg.write_text("#!/bin/sh\nfor output; do :; done\ncat > \"$output\"\n")
+        fake_ffmpeg.chmod(0o755)
+        with_fake_ffmpeg = {"PATH": f"{folder}:{os.environ['PATH']}"}
         parts = [views_go_on, ends_at_any_time, films_leave_nothing, strangers_keep_nobody_out]
         if not options.without_mpi and shutil.which("mpirun"):
             parts.append(stopped_ranks_are_named)

@@ -29,15 +29,15 @@ for (let i = 0; performance.now() - begin < 1000 * Number(seconds); ++i) {
   await page.waitForTimeout(12);
 }
 const moving = await page.evaluate(() => ({
-  ...window.tessera.latencies(), shown: window.tessera.shown(), of_data: window.tessera.latencies(false), of_stand_in: window.tessera.latencies(true),
+  ...window.tessera.latencies(), shown: window.tessera.shown(), of_data: window.tessera.latencies(false), of_preview: window.tessera.latencies(true),
 }));
 await page.mouse.up();
 await at_rest(page).catch(() => {});
 const still = await page.evaluate(() => window.tessera.shown());
 console.log(JSON.stringify({
   file, ranks, window: size, frames: moving.count, frames_a_second: moving.count / Number(seconds), median_ms: moving.median, p95_ms: moving.p95,
-  of_data: moving.of_data, of_stand_in: moving.of_stand_in,
-  moving: { size: `${moving.shown.width}x${moving.shown.height}`, stand_in: moving.shown.stand_in, milliseconds: moving.shown.milliseconds },
+  of_data: moving.of_data, of_preview: moving.of_preview,
+  moving: { size: `${moving.shown.width}x${moving.shown.height}`, preview: moving.shown.preview, milliseconds: moving.shown.milliseconds },
   still: { level: still.level, size: `${still.width}x${still.height}`, milliseconds: still.milliseconds },
 }, null, 1));
 await browser.close();

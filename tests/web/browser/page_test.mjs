@@ -43,7 +43,7 @@ async function opened_section(title) {
 }
 
 before(async () => {
-  // A stand-in for ffmpeg, which keeps the pictures as they come: what a film holds can then be told by its bytes.
+  // A fake ffmpeg, which keeps the pictures as they come: a film then has known bytes.
   mkdirSync(join(folder, "bin"));
   writeFileSync(join(folder, "bin", "ffmpeg"), '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n');
   chmodSync(join(folder, "bin", "ffmpeg"), 0o755);

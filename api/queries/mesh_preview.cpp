@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "api/queries/stand_in.hpp"
+#include "api/queries/preview.hpp"
 
 namespace tessera::api {
 namespace {
@@ -69,7 +69,7 @@ void keep_least(std::uint64_t& sample, std::uint64_t key) {
 
 }  // namespace
 
-GridGeometry stand_in_geometry(const Box& box, std::uint64_t samples) {
+GridGeometry preview_geometry(const Box& box, std::uint64_t samples) {
   const glm::dvec3 sides = box.high - box.low;
   const double longest = std::max({sides.x, sides.y, sides.z});
   GridGeometry geometry;
@@ -100,11 +100,11 @@ GridGeometry stand_in_geometry(const Box& box, std::uint64_t samples) {
   return geometry;
 }
 
-StandInSamples stand_in_samples(const scene::TetMeshView& part, std::span<const std::uint64_t> global_tet,
-                                const std::array<double, 2>& range, const GridGeometry& geometry,
-                                const std::stop_token& stop) {
+PreviewSamples preview_samples(const scene::TetMeshView& part, std::span<const std::uint64_t> global_tet,
+                               const std::array<double, 2>& range, const GridGeometry& geometry,
+                               const std::stop_token& stop) {
   const GridIndex n = geometry.points;
-  StandInSamples samples(static_cast<std::size_t>(geometry.all_samples().count()), no_sample);
+  PreviewSamples samples(static_cast<std::size_t>(geometry.all_samples().count()), no_sample);
   const double scale = range[0] < range[1] ? 1 / (range[1] - range[0]) : 0;
   const bool points = part.association == Association::point;
   constexpr std::size_t tets_at_once = 1 << 14;

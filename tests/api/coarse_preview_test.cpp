@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tessera/coarse_stand_in.hpp"
+#include "tessera/coarse_preview.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "scene/error.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera::coarse_stand_in_test {
+namespace tessera::coarse_preview_test {
 namespace {
 
 using tests::grid_of;
@@ -42,9 +42,9 @@ bool same_samples(const Dataset& a, const Dataset& b) {
          std::memcmp(p.data(), q.data(), p.size() * sizeof(float)) == 0;
 }
 
-TEST(CoarseStandIn, LooksLikeAMesh) {
+TEST(CoarsePreview, LooksLikeAMesh) {
   const Dataset data = Dataset::of(datasets::arrays_of(with_field(datasets::cube(20), waves)));
-  const Dataset coarse = *coarse_stand_in(data, {.samples = 40 * 40 * 40});
+  const Dataset coarse = *coarse_preview(data, {.samples = 40 * 40 * 40});
   EXPECT_TRUE(coarse.is_grid());
   EXPECT_LE(coarse.grid_geometry().all_samples().count(), 40 * 40 * 40);
   EXPECT_GT(coarse.grid_geometry().all_samples().count(), 30 * 30 * 30);
@@ -58,7 +58,7 @@ TEST(CoarseStandIn, LooksLikeAMesh) {
 }
 
 /// A ball, whose boundary is nowhere on the samples' lattice.
-TEST(CoarseStandIn, HasTheVolumeOfAMesh) {
+TEST(CoarsePreview, HasTheVolumeOfAMesh) {
   scene::TetMesh mesh = datasets::cube(24, 0);
   std::vector<std::uint32_t> kept;
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
@@ -74,7 +74,7 @@ TEST(CoarseStandIn, HasTheVolumeOfAMesh) {
   }
   const Dataset data = Dataset::of(datasets::arrays_of(mesh));
   for (const std::uint64_t samples : {17 * 17 * 17, 33 * 33 * 33, 71 * 71 * 71}) {
-    const Dataset coarse = *coarse_stand_in(data, {.samples = samples});
+    const Dataset coarse = *coarse_preview(data, {.samples = samples});
     const auto values = samples_of(coarse);
     const GridIndex n = coarse.grid_geometry().points;
     std::size_t voxels = 0;
@@ -92,17 +92,17 @@ TEST(CoarseStandIn, HasTheVolumeOfAMesh) {
   }
 }
 
-TEST(CoarseStandIn, OfCellDataHasTheCellsValues) {
+TEST(CoarsePreview, OfCellDataHasTheCellsValues) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::with_cell_data(datasets::cube(8))));
-  const Dataset coarse = *coarse_stand_in(data, {.samples = 20 * 20 * 20});
+  const Dataset coarse = *coarse_preview(data, {.samples = 20 * 20 * 20});
   EXPECT_EQ(coarse.association(), Association::point);
   EXPECT_GE(coarse.range()[0], data.range()[0] - 1e-6);
   EXPECT_LE(coarse.range()[1], data.range()[1] + 1e-6);
 }
 
-TEST(CoarseStandIn, LooksLikeAGrid) {
+TEST(CoarsePreview, LooksLikeAGrid) {
   const Dataset data = grid_of(65, waves);
-  const Dataset coarse = *coarse_stand_in(data, {.samples = 32 * 32 * 32});
+  const Dataset coarse = *coarse_preview(data, {.samples = 32 * 32 * 32});
   const GridIndex n = coarse.grid_geometry().points;
   EXPECT_EQ(n, (GridIndex{32, 32, 32}));
   EXPECT_NEAR(glm::distance(coarse.bounds().high, data.bounds().high), 0, 1e-12);
@@ -112,49 +112,49 @@ TEST(CoarseStandIn, LooksLikeAGrid) {
   EXPECT_LT(mean_difference(truth, seen), 3e-3);
 }
 
-TEST(CoarseStandIn, OfFewSamplesIsTheGridItself) {
+TEST(CoarsePreview, OfFewSamplesIsTheGridItself) {
   const Dataset data = grid_of(9, waves);
-  EXPECT_TRUE(coarse_stand_in(data, {})->is_copy_of(data));
+  EXPECT_TRUE(coarse_preview(data, {})->is_copy_of(data));
 }
 
-TEST(CoarseStandIn, IsTheSameForAnyNumberOfThreadsAndRanks) {
+TEST(CoarsePreview, IsTheSameForAnyNumberOfThreadsAndRanks) {
   const scene::TetMesh mesh = with_field(datasets::cube(9), waves);
   const Dataset data = Dataset::of(datasets::arrays_of(mesh));
-  const StandInSettings settings{.samples = 25 * 25 * 25, .threads = 1};
-  const Dataset one = *coarse_stand_in(data, settings);
-  EXPECT_TRUE(same_samples(one, *coarse_stand_in(data, {.samples = settings.samples, .threads = 4})));
+  const PreviewSettings settings{.samples = 25 * 25 * 25, .threads = 1};
+  const Dataset one = *coarse_preview(data, settings);
+  EXPECT_TRUE(same_samples(one, *coarse_preview(data, {.samples = settings.samples, .threads = 4})));
   run_ranks(3, [&](const Communicator& communicator) {
-    EXPECT_TRUE(same_samples(one, *coarse_stand_in(part_of(mesh, communicator), settings, {}, communicator)));
+    EXPECT_TRUE(same_samples(one, *coarse_preview(part_of(mesh, communicator), settings, {}, communicator)));
   });
   const Dataset grid = grid_of(41, waves);
-  EXPECT_TRUE(same_samples(*coarse_stand_in(grid, settings),
-                           *coarse_stand_in(grid, {.samples = settings.samples, .threads = 4})));
+  EXPECT_TRUE(same_samples(*coarse_preview(grid, settings),
+                           *coarse_preview(grid, {.samples = settings.samples, .threads = 4})));
 }
 
-TEST(CoarseStandIn, StopsOnAllRanksWhenOneIsStopped) {
+TEST(CoarsePreview, StopsOnAllRanksWhenOneIsStopped) {
   const scene::TetMesh mesh = with_field(datasets::cube(9), waves);
   std::stop_source stopped;
   stopped.request_stop();
-  EXPECT_FALSE(coarse_stand_in(Dataset::of(datasets::arrays_of(mesh)), {}, stopped.get_token()));
-  EXPECT_FALSE(coarse_stand_in(grid_of(41, waves), {.samples = 1000}, stopped.get_token()));
+  EXPECT_FALSE(coarse_preview(Dataset::of(datasets::arrays_of(mesh)), {}, stopped.get_token()));
+  EXPECT_FALSE(coarse_preview(grid_of(41, waves), {.samples = 1000}, stopped.get_token()));
   run_ranks(2, [&](const Communicator& communicator) {
     const std::stop_token stop = communicator.rank() == 1 ? stopped.get_token() : std::stop_token();
-    EXPECT_FALSE(coarse_stand_in(part_of(mesh, communicator), {}, stop, communicator));
+    EXPECT_FALSE(coarse_preview(part_of(mesh, communicator), {}, stop, communicator));
   });
 }
 
-TEST(CoarseStandIn, RefusesTooFewAndTooMany) {
+TEST(CoarsePreview, RefusesTooFewAndTooMany) {
   for (const std::uint64_t samples : {std::uint64_t{7}, std::uint64_t{1} << 40})
-    EXPECT_THROW((void)coarse_stand_in(grid_of(9, waves), {.samples = samples}), Error);
+    EXPECT_THROW((void)coarse_preview(grid_of(9, waves), {.samples = samples}), Error);
 }
 
-TEST(CoarseStandIn, OfASheetAlongTheBoxIsAsThick) {
+TEST(CoarsePreview, OfASheetAlongTheBoxIsAsThick) {
   const Dataset sheet = Dataset::of(datasets::arrays_of(datasets::regular_split(8, 8, 1, {0.1, 0.1, 1e-6})));
-  const Dataset coarse = *coarse_stand_in(sheet, {.samples = 1000});
+  const Dataset coarse = *coarse_preview(sheet, {.samples = 1000});
   EXPECT_EQ(coarse.grid_geometry().points[2], 2);
   EXPECT_EQ(coarse.bounds(), sheet.bounds());
   EXPECT_EQ(coarse.blank_samples(), 0u);
 }
 
 }  // namespace
-}  // namespace tessera::coarse_stand_in_test
+}  // namespace tessera::coarse_preview_test

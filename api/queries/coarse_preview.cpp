@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tessera/coarse_stand_in.hpp"
+#include "tessera/coarse_preview.hpp"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -11,7 +11,7 @@
 
 #include "api/communicator.hpp"
 #include "api/dataset.hpp"
-#include "api/queries/stand_in.hpp"
+#include "api/queries/preview.hpp"
 #include "frame/ranks/reduce.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -36,18 +36,18 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
       scene::bounds(geometry), {range.low, range.high}, scene::mean_thickness(geometry), 0, geometry.association};
   if (!whole.clip.empty() && whole.samples != nullptr) state->facts.box = whole.facts.box, state->clip = whole.clip;
   state->source = whole.source;
-  state->format = "coarse stand-in";
+  state->format = "coarse preview";
   state->field_name = whole.field_name;
   state->shape = whole.shape;
   state->body_axes = whole.body_axes;
   state->fields = {{whole.field_name, state->facts.association, 1, "float", range.low, range.high, range.blanks, true}};
   const GridIndex n = geometry.samples();
-  state->notes = {fmt::format("a coarse stand-in of {} x {} x {} samples", n[0], n[1], n[2])};
+  state->notes = {fmt::format("a coarse preview of {} x {} x {} samples", n[0], n[1], n[2])};
   return StateAccess::make(std::move(state));
 }
 
-/// A grid of samples in the encoding of StandInSamples.
-std::shared_ptr<const scene::SampleSource> source_of(const api::StandInSamples& samples,
+/// A grid of samples in the encoding of PreviewSamples.
+std::shared_ptr<const scene::SampleSource> source_of(const api::PreviewSamples& samples,
                                                      const std::array<double, 2>& range, GridGeometry geometry,
                                                      const std::string& field) {
   std::vector<float> values;
@@ -60,17 +60,17 @@ std::shared_ptr<const scene::SampleSource> source_of(const api::StandInSamples& 
   grid.scale = range[0] < range[1] ? range[1] - range[0] : 1;
   grid.shift = range[0];
   grid.field_name = field;
-  return scene::MemorySource::of(std::move(grid), std::move(values), "coarse stand-in");
+  return scene::MemorySource::of(std::move(grid), std::move(values), "coarse preview");
 }
 
 }  // namespace
 
-std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSettings& settings,
-                                       const std::stop_token& stop, const Communicator& communicator) {
+std::optional<Dataset> coarse_preview(const Dataset& dataset, const PreviewSettings& settings,
+                                      const std::stop_token& stop, const Communicator& communicator) {
   const Dataset::State& data = StateAccess::of(dataset);
   if (settings.samples < least_samples || settings.samples > most_samples)
     throw scene::bad_input(
-        fmt::format("stand-in: {} samples; choose {} to {}", settings.samples, least_samples, most_samples));
+        fmt::format("preview: {} samples; choose {} to {}", settings.samples, least_samples, most_samples));
   if (data.ranks > 1 && data.ranks != communicator.size())
     throw scene::bad_input(fmt::format(
         "{}: this rank has a part of the mesh; give the communicator that it was opened with", data.source));
@@ -82,10 +82,10 @@ std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSett
     if (samples == nullptr) return std::nullopt;
     return dataset_of(std::move(samples), data, settings.threads);
   }
-  const GridGeometry geometry = api::stand_in_geometry(data.facts.box, settings.samples);
-  api::StandInSamples samples;
+  const GridGeometry geometry = api::preview_geometry(data.facts.box, settings.samples);
+  api::PreviewSamples samples;
   arena.execute(
-      [&] { samples = api::stand_in_samples(data.mesh, data.global_tet, data.facts.scalar_range, geometry, stop); });
+      [&] { samples = api::preview_samples(data.mesh, data.global_tet, data.facts.scalar_range, geometry, stop); });
   bool stopped = stop.stop_requested();
   if (data.ranks > 1) {
     const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();

@@ -12,7 +12,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-struct StandInSettings {
+struct PreviewSettings {
   /// Approximate upper limit on the number of samples; a grid with fewer samples keeps its own number.
   std::uint64_t samples = std::uint64_t{128} * 128 * 128;
   int threads = 0;  ///< 0: all cores
@@ -35,9 +35,9 @@ struct StandInSettings {
 /// The result has the same bits for any number of threads. Collective for a mesh in parts, one per rank: every rank
 /// then has the whole grid. Returns nothing if a stop is requested, on any rank. Throws Error(bad_input) for fewer than
 /// 8 samples.
-TESSERA_EXPORT std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSettings& settings = {},
-                                                      const std::stop_token& stop = {},
-                                                      const Communicator& communicator = {});
+TESSERA_EXPORT std::optional<Dataset> coarse_preview(const Dataset& dataset, const PreviewSettings& settings = {},
+                                                     const std::stop_token& stop = {},
+                                                     const Communicator& communicator = {});
 
 }  // namespace v0_1
 }  // namespace tessera

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "api/queries/stand_in.hpp"
+#include "api/queries/preview.hpp"
 
 namespace tessera::api {
 namespace {
@@ -112,7 +112,7 @@ std::shared_ptr<const scene::SampleSource> coarser(const scene::SampleSource& so
   scene::Grid coarse = grid;
   const std::int64_t more = cells ? 1 : 0;
   coarse.geometry = geometry_of(grid.geometry, {m[0] + more, m[1] + more, m[2] + more});
-  return scene::MemorySource::of(std::move(coarse), std::move(means), "coarse stand-in");
+  return scene::MemorySource::of(std::move(coarse), std::move(means), "coarse preview");
 }
 
 }  // namespace tessera::api
