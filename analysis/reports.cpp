@@ -74,10 +74,10 @@ Json grid_counters_json(const FrameStatistics& statistics) {
 void add_counters_of(const MeshCounts& counts, Json& json) {
   const auto group_of = [](const MeshCounter& counter) { return counter.name.substr(0, counter.name.find('/')); };
   for (const MeshCounter& counter : mesh_counters) {
-    const bool says_something = std::ranges::any_of(mesh_counters, [&](const MeshCounter& other) {
+    const bool is_relevant = std::ranges::any_of(mesh_counters, [&](const MeshCounter& other) {
       return group_of(other) == group_of(counter) && (!other.if_any || counts.*other.member > 0);
     });
-    if (!counter.name.empty() && says_something)
+    if (!counter.name.empty() && is_relevant)
       json[Json::json_pointer("/" + std::string(counter.name))] = counts.*counter.member;
   }
 }

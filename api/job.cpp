@@ -25,7 +25,7 @@ namespace tessera {
 inline namespace v0_1 {
 
 struct Job::State {
-  JobVoice voice;
+  JobReporting reporting;
   std::unique_ptr<exchange::LoopbackNetwork> alone;
   std::unique_ptr<exchange::MpiTransport> mpi;
 
@@ -37,18 +37,19 @@ struct Job::State {
   /// First contact, before ranks wait for one another.
   void meet() {
     if (std::exchange(has_met, true)) return;
-    exchange::make_first_contact(transport(), exchange::first_contact_patience(), voice.arguments);
+    exchange::make_first_contact(transport(), exchange::first_contact_patience(), reporting.arguments);
     if (transport().size() > 1) transport().use_bells(exchange::Bells::hung(transport()));
   }
   bool has_met = false;
 };
 
-Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr, false})) {
+Job::Job(JobReporting reporting)
+    : state_(std::make_unique<State>(State{std::move(reporting), nullptr, nullptr, false})) {
   if (exchange::launched_by_mpi()) {
     // The launcher closes its sockets when it dies: then a write fails, instead of a signal killing the rank.
     std::signal(SIGPIPE, SIG_IGN);
     state_->mpi = std::make_unique<exchange::MpiTransport>(
-        exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});
+        exchange::MpiTransport::Hooks{state_->reporting.report, exchange::expect_end, exchange::ended_from_outside});
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }
@@ -63,7 +64,7 @@ Communicator Job::communicator() { return api::communicator_over(state_->transpo
 void Job::answer_termination() {
   state_->meet();
   if (size() > 1)
-    exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy,
+    exchange::answer_termination(state_->transport(), state_->reporting.program, state_->reporting.remedy,
                                  system::abandon_in_handler);
 }
 
@@ -106,12 +107,12 @@ std::optional<Error> Job::finish() {
     state_->alone->rank(0).check();
     return std::nullopt;
   } catch (const Error& error) {
-    state_->voice.speak(error);
+    state_->reporting.report(error);
     return error;
   }
 }
 
-void Job::say_once(const std::string& line) {
+void Job::print_once(const std::string& line) {
   if (!exchange::may_speak()) return;
   fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);

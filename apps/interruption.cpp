@@ -21,7 +21,7 @@ namespace tessera::apps {
 namespace {
 
 /// A pipe to a thread, on which a signal handler reports the signal. The thread may do what a handler may not.
-std::array<int, 2> heard{-1, -1};
+std::array<int, 2> signal_pipe{-1, -1};
 std::atomic<int> ending = 0;  ///< the number of the first signal
 
 extern "C" void on_interruption(int signal) {
@@ -30,16 +30,16 @@ extern "C" void on_interruption(int signal) {
   // A second signal ends the process at once.
   if (!ending.compare_exchange_strong(none, signal)) ::_exit(128 + signal);
   const auto number = static_cast<char>(signal);
-  [[maybe_unused]] const ssize_t told = ::write(heard[1], &number, 1);
+  [[maybe_unused]] const ssize_t written = ::write(signal_pipe[1], &number, 1);
   errno = before;
 }
 
 [[noreturn]] void end_by(int signal) {
   StatusLine::end_all();
   abandon_outputs();
-  Job::say_once(fmt::format("tessera: ended by {}; no output is half-written", signal == SIGINT    ? "Ctrl-C"
-                                                                               : signal == SIGTERM ? "SIGTERM"
-                                                                                                   : "SIGHUP"));
+  Job::print_once(fmt::format("tessera: ended by {}; no output is half-written", signal == SIGINT    ? "Ctrl-C"
+                                                                                 : signal == SIGTERM ? "SIGTERM"
+                                                                                                     : "SIGHUP"));
   std::signal(signal, SIG_DFL);
   ::kill(::getpid(), signal);
   for (;;) ::pause();
@@ -48,7 +48,7 @@ extern "C" void on_interruption(int signal) {
 void await_interruption() {
   char signal = 0;
   ssize_t got = 0;
-  while ((got = ::read(heard[0], &signal, 1)) < 0 && errno == EINTR) {
+  while ((got = ::read(signal_pipe[0], &signal, 1)) < 0 && errno == EINTR) {
   }
   if (got == 1) end_by(signal);
 }
@@ -56,7 +56,7 @@ void await_interruption() {
 }  // namespace
 
 void answer_interruption() {
-  if (::pipe2(heard.data(), O_CLOEXEC) != 0) return;  // signals then end the process as usual
+  if (::pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;  // signals then end the process as usual
   try {
     std::thread(await_interruption).detach();
   } catch (const std::exception&) {

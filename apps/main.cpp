@@ -51,7 +51,7 @@ int fail(const Error& error) {
   // A name or a value from a file may be as long as the file.
   constexpr std::size_t longest = 3000, half = 1000;
   if (line.size() > longest) line = line.substr(0, half) + " ... " + line.substr(line.size() - half);
-  Job::say_once(line);
+  Job::print_once(line);
   return static_cast<int>(error.code());
 }
 
@@ -201,7 +201,7 @@ int main(int argc, char** argv) {
     std::set_terminate(on_terminate);
     constexpr auto remedy = "finished images stay, and the same command with --resume goes on from there";
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});
+    job.emplace(tessera::JobReporting{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});
   } catch (...) {
     return fail(as_error());
   }

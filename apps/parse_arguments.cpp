@@ -105,17 +105,17 @@ OptionWords words_of(const CommandLine& line, Trait command) {
 
 }  // namespace
 
-std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool says) {
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool prints) {
   const std::string first = argc > 1 ? argv[1] : "";
   const CommandRow* const command = command_named(first);
-  const auto say = [&](const std::string& text) {
-    if (says) std::fputs(text.c_str(), stdout);
+  const auto print = [&](const std::string& text) {
+    if (prints) std::fputs(text.c_str(), stdout);
     return std::nullopt;
   };
   if (first == "complete") {  // internal, for completion scripts: the words are not checked
     std::string names;
     for (const std::string& name : completions({argv + 2, argv + argc})) names += name + '\n';
-    return say(names);
+    return print(names);
   }
   // CLI11 would only report that a subcommand is missing.
   if (!first.empty() && first.front() != '-' && command == nullptr) throw no_command(first);
@@ -126,11 +126,11 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
     line.app.parse(argc, argv);
     words = words_of(line, command->trait);
   } catch (const CLI::CallForVersion& version) {
-    return say(std::string(version.what()) + "\n");
+    return print(std::string(version.what()) + "\n");
   } catch (const CLI::CallForAllHelp&) {
-    return say(help_page(command, true));
+    return print(help_page(command, true));
   } catch (const CLI::CallForHelp&) {
-    return say(help_page(command, false));
+    return print(help_page(command, false));
   } catch (const CLI::ParseError& error) {
     const CLI::App& of = command == nullptr ? line.app : *line.app.get_subcommand(first);
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
@@ -141,8 +141,9 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
                       of.remaining().front()));
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
-  if (command->trait == Trait::completion && words->given("shell")) return say(completion_script(words->word("shell")));
-  if (command->trait == Trait::help) return say(help_of(*words));
+  if (command->trait == Trait::completion && words->given("shell"))
+    return print(completion_script(words->word("shell")));
+  if (command->trait == Trait::help) return print(help_of(*words));
   if (words->given("config")) {
     const std::string& file = words->word("config");
     words->set_defaults(State::from_toml(read_text(file), file));

@@ -13,8 +13,8 @@ struct Arguments {
   OptionWords words;
 };
 
-/// None if nothing remains to do: help or the version was requested, and is printed on standard output if `says`.
+/// None if nothing remains to do: help or the version was requested, and is printed on standard output if `prints`.
 /// Throws Error(bad_input) for invalid arguments, suggesting the nearest name.
-std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool says);
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool prints);
 
 }  // namespace tessera::apps

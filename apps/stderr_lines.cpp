@@ -86,7 +86,7 @@ std::string in_lines(std::string_view statement) {
   return std::move(lines).all();
 }
 
-void say_lines(std::string_view statement) {
+void print_lines(std::string_view statement) {
   fmt::print(stderr, "{}\n", in_lines(printable(with_stream_names(std::string(statement)))));
 }
 

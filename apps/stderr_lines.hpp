@@ -15,7 +15,7 @@ inline constexpr std::size_t most_columns = 160;
 std::string in_lines(std::string_view statement);
 
 /// Prints it with in_lines() and printable(), since it may contain names from files; standard input has its own name.
-void say_lines(std::string_view statement);
+void print_lines(std::string_view statement);
 
 /// `1.23 s` for a second and more, otherwise `45.6 ms`.
 std::string time_words(double milliseconds);

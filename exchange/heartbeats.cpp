@@ -66,7 +66,7 @@ std::string Heartbeats::name_of(int rank) const {
 void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>& messages) {
   const std::string name = name_of(notice.rank);
   if (notice.back) {
-    if (settings_.say) settings_.say(fmt::format("{} is back after {:.3g} s", name, seconds(notice.silent)));
+    if (settings_.report) settings_.report(fmt::format("{} is back after {:.3g} s", name, seconds(notice.silent)));
     return;
   }
   if (rank_ != 0)
@@ -81,8 +81,8 @@ void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>&
                           name, seconds(notice.silent))}};
     return;
   }
-  if (settings_.say)
-    settings_.say(
+  if (settings_.report)
+    settings_.report(
         fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; waiting "
                     "for it (`on_stall` abort ends the run)",
                     name, seconds(notice.silent)));

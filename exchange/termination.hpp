@@ -9,7 +9,7 @@
 /// The behaviour of a rank that is terminated from outside: see tessera::Job::answer_termination(). Linux.
 namespace tessera::exchange {
 
-/// Installs handlers of SIGTERM and SIGALRM for the lifetime of the process. `program` and `remedy` as in JobVoice;
+/// Installs handlers of SIGTERM and SIGALRM for the lifetime of the process. `program` and `remedy` as in JobReporting;
 /// `before_end` is called in the handler before the process ends, and must be safe in signal handlers. Collective; for
 /// jobs of several ranks.
 void answer_termination(Transport& transport, const std::string& program, const std::string& remedy,

@@ -159,15 +159,15 @@ void chart(const OptionWords& words) {
   line.begin("rendering the reference");
   const analysis::ChartTruth truth = analysis::chart_truth(scene, budget / 3, pixels);
   const auto methods = analysis::chart_methods(scene);
-  std::size_t said = 0;
-  const auto say = [&](const analysis::ChartPoint& point) {
-    line.advance(static_cast<double>(++said) / static_cast<double>(methods.size()));
+  std::size_t finished = 0;
+  const auto show_progress = [&](const analysis::ChartPoint& point) {
+    line.advance(static_cast<double>(++finished) / static_cast<double>(methods.size()));
     if (options.quiet) return;
     const auto away = StatusLine::away();
     fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
   };
   line.begin("measuring methods");
-  analysis::ChartSweep measured = analysis::sweep(scene, methods, truth, {read, budget, repeat}, say);
+  analysis::ChartSweep measured = analysis::sweep(scene, methods, truth, {read, budget, repeat}, show_progress);
   line.begin("");
   auto& points = measured.points;
   std::vector<analysis::ChartPoint> alone;

@@ -56,8 +56,8 @@ void convert_mesh(const InputFile& input, const std::filesystem::path& output, R
     parts = fmt::format(
         " and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
         pieces->partition.kind == PartitionKind::random ? fmt::format(", seed {}", pieces->partition.seed) : "");
-  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), cells_line(data.mesh_counts()),
-                        data.field_name(), output.string(), parts));
+  print_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), cells_line(data.mesh_counts()),
+                          data.field_name(), output.string(), parts));
 }
 
 void convert_grid(const InputFile& input, const std::filesystem::path& output, const ReadOptions& options, int block,
@@ -82,8 +82,8 @@ void convert_grid(const InputFile& input, const std::filesystem::path& output, c
     how_to_read = fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}",
                               g.points[0], g.points[1], g.points[2], name_of(written_type(data)), g.spacing.x,
                               g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z);
-  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), samples_line(described(data)),
-                        data.field_name(), output.string(), how_to_read));
+  print_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), samples_line(described(data)),
+                          data.field_name(), output.string(), how_to_read));
 }
 
 }  // namespace tessera::apps

@@ -57,7 +57,7 @@ void formats(bool as_json) {
                     {"extensions", format.extensions},
                     {"holds", word(format.holds)},
                     {"remark", with_options(format.remark)},
-                    {"told_by_beginning", format.told_by_beginning},
+                    {"recognized_by_content", format.recognized_by_content},
                     {"left_out", format.left_out}});
   fmt::print("{}\n", list.dump(2));
 }

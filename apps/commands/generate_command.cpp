@@ -64,8 +64,8 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
     line.begin("");
     const auto& points = volume->geometry().points;
     if (!quiet)
-      say_lines(fmt::format("{}: {} of {}x{}x{} {} samples", output.string(), kind, points[0], points[1], points[2],
-                            name_of(volume->grid().type)));
+      print_lines(fmt::format("{}: {} of {}x{}x{} {} samples", output.string(), kind, points[0], points[1], points[2],
+                              name_of(volume->grid().type)));
     return;
   }
   check_mesh_output(output, {});
@@ -74,8 +74,8 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
   write_mesh(mesh, output);
   line.begin("");
   if (!quiet)
-    say_lines(fmt::format("{}: {} with {} tets, {} points, field {}", output.string(), kind, mesh.tets.size() / 4,
-                          mesh.points.size() / 3, mesh.field_name));
+    print_lines(fmt::format("{}: {} with {} tets, {} points, field {}", output.string(), kind, mesh.tets.size() / 4,
+                            mesh.points.size() / 3, mesh.field_name));
 }
 
 }  // namespace tessera::apps

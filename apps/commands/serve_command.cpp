@@ -56,7 +56,7 @@ void serve(const OptionWords& words, Job& job) {
   };
   events.rank_lost = [] {
     abandon_outputs();
-    Job::say_once("tessera: a rank is lost, or was ended from outside; start the server again");
+    Job::print_once("tessera: a rank is lost, or was ended from outside; start the server again");
     std::_Exit(static_cast<int>(ErrorCode::system_failure));
   };
   server::serve(options, *reader, job, events);

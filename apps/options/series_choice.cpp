@@ -157,9 +157,9 @@ bool function_has_values(const RenderOptions& options) {
 
 bool goes_by_steps(std::size_t steps, const RenderOptions& options) {
   if (steps < 2) return false;
-  const bool says_values =
+  const bool fixes_values =
       function_has_values(options) || (options.function.range && !options.transfer_function.empty());
-  return options.read.field.empty() || !says_values;
+  return options.read.field.empty() || !fixes_values;
 }
 
 std::vector<std::size_t> steps_to_look_at(std::size_t steps) {

@@ -26,7 +26,7 @@ std::optional<StallSettings> stall_settings(const OptionWords& words, bool quiet
     settings.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * *seconds));
   }
   if (!quiet)
-    settings.say = [](const std::string& notice) {
+    settings.report = [](const std::string& notice) {
       fmt::print(stderr, "{}\n", with_options(notice));
       std::fflush(stderr);
     };

@@ -52,7 +52,7 @@ void RunOutput::describe(analysis::Description data, LoadedTransferFunction tran
 void RunOutput::warn(const std::string& warning) {
   if (!prints_) return;
   const auto away = StatusLine::away();
-  say_lines(fmt::format("tessera: warning: {}: {}", options_.input().string(), warning));
+  print_lines(fmt::format("tessera: warning: {}: {}", options_.input().string(), warning));
 }
 
 void RunOutput::skip_to(std::size_t frame) {
@@ -69,11 +69,11 @@ void RunOutput::add(const FilmFrame& frame, const FrameRecord& record) {
   {
     const auto away = StatusLine::away();
     if (rendered_ == 0 && !options_.quiet) {
-      say_lines(run_line(options_, *data_, *transfer_function_, frames_, frame, record));
-      for (const std::string& note : data_->notes) say_lines("note: " + note);
+      print_lines(run_line(options_, *data_, *transfer_function_, frames_, frame, record));
+      for (const std::string& note : data_->notes) print_lines("note: " + note);
     }
     if (frames_.size() > 1 && !options_.quiet) {
-      say_lines(frame_line(options_, frames_, frame, record));
+      print_lines(frame_line(options_, frames_, frame, record));
     }
     // If standard output is an image or the report, it contains nothing else.
     std::FILE* const lines = options_.to_standard_output || options_.report_to_standard_output ? stderr : stdout;
@@ -95,8 +95,8 @@ ExitCode RunOutput::finish() {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options_.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
   } else if (!options_.quiet) {
-    say_lines(fmt::format("{}: all {} frames are there already, nothing rendered", options_.input().string(),
-                          frames_.size()));
+    print_lines(fmt::format("{}: all {} frames are there already, nothing rendered", options_.input().string(),
+                            frames_.size()));
   }
   if (options_.report_to_standard_output)
     write_standard_output(with_stream_names(frame_reports_.text(report_)));

@@ -26,8 +26,8 @@ struct FileFormat {
   std::string name;                     ///< "VTK XML unstructured grid", "NRRD", ...
   std::vector<std::string> extensions;  ///< in lower case, with the dot; may be empty
   FileHolds holds = FileHolds::mesh;
-  std::string remark;              ///< conditions and limits; for formats that are not read, the reason
-  bool told_by_beginning = false;  ///< recognised by content: a wrong name does not matter
+  std::string remark;                  ///< conditions and limits; for formats that are not read, the reason
+  bool recognized_by_content = false;  ///< a wrong name does not matter
   std::string left_out;  ///< the reader program that is not installed ("tessera-read-vtk"); empty if it is read
 };
 

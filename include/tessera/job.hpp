@@ -21,15 +21,15 @@ struct StallSettings {
   std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, > 0
   bool ends_run = false;  ///< with an error that names the rank; otherwise the job waits
   /// Called to report a rank that the job waits for, and its return, on a thread of the job. May be empty.
-  std::function<void(const std::string& words)> say;
+  std::function<void(const std::string& words)> report;
 };
 
 /// How a job identifies itself and reports errors.
-struct JobVoice {
+struct JobReporting {
   std::string program;  ///< prefix of its lines
   std::string remedy;   ///< advice for a run that was terminated from outside
   /// Called to report the run's error, on any thread, on one rank before any rank can end.
-  std::function<void(const Error&)> speak;
+  std::function<void(const Error&)> report;
   /// The arguments of this rank. All ranks must have been started with the same: they are compared when the ranks first
   /// communicate, in answer_termination() or agree_instruction_sets(), which throw Error(bad_input) on all ranks if
   /// they differ.
@@ -47,7 +47,7 @@ class TESSERA_EXPORT Job {
  public:
   /// Starts MPI under a launcher. Throws Error(system_failure) if MPI cannot start. If MPI itself terminates a rank
   /// during startup, only MPI and the launcher report it.
-  explicit Job(JobVoice voice);
+  explicit Job(JobReporting reporting);
   ~Job();
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
@@ -64,7 +64,7 @@ class TESSERA_EXPORT Job {
   /// an error. If the launcher dies, its ranks end too. Collective; does nothing for one process (Linux).
   void answer_termination();
   /// Watches for ranks that have stopped, from now on until MPI ends. Every rank calls this, with the same settings
-  /// except for `say`.
+  /// except for `report`.
   void watch_stalls(const StallSettings& settings);
   /// Restricts every rank's kernels to the instruction sets that all ranks have: bits differ between sets, and an image
   /// must not depend on which machine rendered a tile. Collective; it must precede the first kernel and applies to the
@@ -91,7 +91,7 @@ class TESSERA_EXPORT Job {
 
   /// Writes a line to stderr unless one was already written: by any rank on this machine since answer_termination(),
   /// before that by this process. May be called from any thread.
-  static void say_once(const std::string& line);
+  static void print_once(const std::string& line);
 
  private:
   struct State;
