@@ -181,11 +181,11 @@ Overlap overlap_of(const TraceFile& trace) {
       if (time >= span.start_us + span.wall_us) return 1.0;
       return span.wall_us > 0 ? std::clamp((time - span.start_us) / span.wall_us, 0.0, 1.0) : 0.0;
     };
-    const std::size_t way = sent ? 0 : 1;
+    const std::size_t direction = sent ? 0 : 1;
     const auto moved = static_cast<double>(span.bytes);
-    bytes[way] += moved;
-    before_work[way] += moved * before(extent->second.last_work);
-    before_end[way] += moved * before(extent->second.end);
+    bytes[direction] += moved;
+    before_work[direction] += moved * before(extent->second.last_work);
+    before_end[direction] += moved * before(extent->second.end);
   }
   if (bytes[0] > 0) {
     overlap.sent_before_projected = before_work[0] / bytes[0];

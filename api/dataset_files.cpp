@@ -86,7 +86,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
     return frame::open_shared_volume(transport, input, options);
   }();
   api::require_same_files(transport);  // the ones that `volume` names
-  state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
+  state->axis_scale = cells::chosen_scale(options.axis_scale, volume.xy_in_degrees,
                                           scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
     volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());

@@ -77,7 +77,7 @@ class GridByRays final : public Session::State {
       } catch (const api::SinkFailure& failure) {
         std::rethrow_exception(failure.cause);
       } catch (const std::exception& fault) {
-        tell_others(fault);
+        fail_others(fault);
         throw;
       }
       if (!frame) {
@@ -135,7 +135,7 @@ class GridByRays final : public Session::State {
   }
 
   /// Ends the run on all ranks, which would otherwise wait for this one, and throws the run's error.
-  void tell_others(const std::exception& fault) {
+  void fail_others(const std::exception& fault) {
     if (transport_->size() == 1) return;
     transport_->fail(frame::run_error(*transport_, fault));
     transport_->check();
@@ -174,7 +174,7 @@ class GridByRays final : public Session::State {
     try {
       make_renderer(largest);
     } catch (const std::exception& fault) {
-      tell_others(fault);
+      fail_others(fault);
       throw;
     }
     const std::size_t complete =

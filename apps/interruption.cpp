@@ -45,7 +45,7 @@ extern "C" void on_interruption(int signal) {
   for (;;) ::pause();
 }
 
-void await_interruption() {
+void wait_for_interruption() {
   char signal = 0;
   ssize_t got = 0;
   while ((got = ::read(signal_pipe[0], &signal, 1)) < 0 && errno == EINTR) {
@@ -58,7 +58,7 @@ void await_interruption() {
 void answer_interruption() {
   if (::pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;  // signals then end the process as usual
   try {
-    std::thread(await_interruption).detach();
+    std::thread(wait_for_interruption).detach();
   } catch (const std::exception&) {
     return;
   }

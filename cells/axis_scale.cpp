@@ -21,7 +21,7 @@ double round_factor(double number) {
 
 }  // namespace
 
-glm::dvec3 scale_beside_degrees(const Box& box) {
+glm::dvec3 scale_for_degrees(const Box& box) {
   const glm::dvec3 side = box.high - box.low;
   const double wide = std::max(side.x, side.y), narrow = std::min(side.x, side.y);
   if (box.empty() || !(wide > 0) || !(side.z > 0)) return glm::dvec3(1);
@@ -32,10 +32,10 @@ glm::dvec3 scale_beside_degrees(const Box& box) {
   return {1, 1, round_factor(wide / 4 / side.z)};
 }
 
-glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool beside_degrees, const Box& box,
+glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degrees, const Box& box,
                         std::vector<std::string>& notes) {
   if (asked) return *asked;
-  const glm::dvec3 scale = beside_degrees ? scale_beside_degrees(box) : glm::dvec3(1);
+  const glm::dvec3 scale = xy_in_degrees ? scale_for_degrees(box) : glm::dvec3(1);
   if (scale != glm::dvec3(1))
     notes.push_back(
         fmt::format("x and y are in degrees and z is not: z is multiplied by {:g}, for the box was thinner than 1:20; "

@@ -15,10 +15,10 @@ namespace tessera::cells {
 
 /// For x and y in degrees and z a length: 1, unless the box is thinner than 1:20; then z is multiplied by the largest
 /// of 1, 2 or 5 times a power of ten that makes it at most a quarter of the longer of x and y.
-glm::dvec3 scale_beside_degrees(const Box& box);
+glm::dvec3 scale_for_degrees(const Box& box);
 
-/// The requested scale; otherwise, if `beside_degrees`, one derived from the box, with a note; otherwise 1.
-glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool beside_degrees, const Box& box,
+/// The requested scale; otherwise, if `xy_in_degrees`, one derived from the box, with a note; otherwise 1.
+glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degrees, const Box& box,
                         std::vector<std::string>& notes);
 
 /// Scales the points of cells.

@@ -64,7 +64,7 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
   out.counts = {};
   out.curved = {};
   out.error = nullptr;
-  Workplace work{
+  SplitScratch work{
       .tets = {}, .faces = {}, .corners = {}, .polyhedra = {}, .curved = CurvedWork(curved_.settings().tolerance)};
   for (std::size_t c = first; c < last; ++c) {
     const std::size_t tets = out.tets.size();
@@ -79,7 +79,7 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
   out.counts.cells_read = last - first;
 }
 
-void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) const {
+void BlockCells::split_cell(std::size_t c, SplitScratch& work, BlockTets& out) const {
   const bool all_tets = block_.types.empty();
   const std::uint8_t type = all_tets ? vtk_number(CellType::tetra) : block_.types[c];
   const CellShape& shape = shapes_[type];
@@ -136,7 +136,7 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
       c, work.tets, [&](std::uint32_t v) { return points_[v]; }, out);
 }
 
-void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) const {
+void BlockCells::split_curved(std::size_t c, SplitScratch& work, BlockTets& out) const {
   try {
     curved_.split(c, work.curved);
   } catch (const std::length_error&) {
@@ -176,7 +176,7 @@ void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) co
       c, work.tets, [&](std::uint32_t v) { return v < own ? points_[v] : out.added[v - own]; }, out);
 }
 
-void BlockCells::split_polyhedron(std::size_t c, CellKind kind, Workplace& work, BlockTets& out) const {
+void BlockCells::split_polyhedron(std::size_t c, CellKind kind, SplitScratch& work, BlockTets& out) const {
   const bool has_faces = kind == CellKind::polyhedron;
   if (has_faces && (block_.face_locations.empty() || block_.face_locations[c] == CellBlock::no_faces))
     throw scene::bad_input(
@@ -192,14 +192,14 @@ void BlockCells::split_polyhedron(std::size_t c, CellKind kind, Workplace& work,
       work.corners.push_back(block_.connectivity[k]);
   }
   if (is_left_out(c, work.corners, out)) return;
-  const auto way = has_faces ? work.polyhedra.split(faces, points_) : work.polyhedra.split_hull(work.corners, points_);
-  if (!way) {
+  const auto fill = has_faces ? work.polyhedra.split(faces, points_) : work.polyhedra.split_hull(work.corners, points_);
+  if (!fill) {
     ++out.counts.cells_open;
     return;
   }
   ++out.counts.cells_polyhedra;
-  if (*way == SurfaceFill::from_inside) ++out.counts.polyhedra_from_inside;
-  if (*way == SurfaceFill::in_pieces) ++out.counts.polyhedra_in_pieces;
+  if (*fill == SurfaceFill::from_inside) ++out.counts.polyhedra_from_inside;
+  if (*fill == SurfaceFill::in_pieces) ++out.counts.polyhedra_in_pieces;
   if (keep_filled(c, work.polyhedra, out)) ++out.counts.polyhedra_tangled;
 }
 

@@ -49,15 +49,15 @@ class BlockCells {
 
  private:
   /// Scratch memory that is reused from cell to cell.
-  struct Workplace {
+  struct SplitScratch {
     std::vector<scene::Tet> tets;
     std::vector<std::uint32_t> faces, corners;
     PolyhedronSplitter polyhedra;
     CurvedWork curved;
   };
-  void split_cell(std::size_t c, Workplace& work, BlockTets& out) const;
-  void split_curved(std::size_t c, Workplace& work, BlockTets& out) const;
-  void split_polyhedron(std::size_t c, CellKind kind, Workplace& work, BlockTets& out) const;
+  void split_cell(std::size_t c, SplitScratch& work, BlockTets& out) const;
+  void split_curved(std::size_t c, SplitScratch& work, BlockTets& out) const;
+  void split_polyhedron(std::size_t c, CellKind kind, SplitScratch& work, BlockTets& out) const;
   bool keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const;
   bool is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const;
   template <class PlaceOf>

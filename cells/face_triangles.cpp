@@ -35,11 +35,11 @@ bool FaceCutter::cut(std::span<const std::uint32_t> corners, std::span<const glm
   if (corners.size() < 3) return true;
   // All rounded values are computed along this ring, so they are the same for every list of the same corners.
   ring_.assign(corners.begin(), corners.end());
-  other_way_.assign(corners.rbegin(), corners.rend());
+  reversed_.assign(corners.rbegin(), corners.rend());
   start_at_least(ring_);
-  start_at_least(other_way_);
-  backwards_ = other_way_ < ring_;
-  if (backwards_) ring_.swap(other_way_);
+  start_at_least(reversed_);
+  backwards_ = reversed_ < ring_;
+  if (backwards_) ring_.swap(reversed_);
   triangles_ = &triangles;
 
   const auto fan_area = [&](std::size_t k) {

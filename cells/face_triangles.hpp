@@ -39,7 +39,7 @@ class FaceCutter {
   void cut_ears(std::span<const glm::dvec3> p);
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  std::vector<std::uint32_t> ring_, other_way_;  ///< the corners from the smallest on, its smaller neighbour next
+  std::vector<std::uint32_t> ring_, reversed_;  ///< the corners from the smallest on, its smaller neighbour next
   std::vector<Ear> ears_;
   bool backwards_ = false;  ///< `ring_` has the opposite direction to the given list
   glm::dvec3 area_{0};      ///< twice the area vector of `ring_`

@@ -21,8 +21,8 @@ struct MeshBlocks {
   std::vector<std::string> surface_names{};  ///< of surfaces left out because the file has a volume
   std::vector<FieldSummary> fields{};        ///< of the file, if options make the reader load only the chosen field
   scene::TimeStepRead time_step{};
-  bool beside_degrees = false;  ///< x and y are degrees, z is a length
-  glm::dvec3 axis_scale{1};     ///< factors applied to the points
+  bool xy_in_degrees = false;  ///< x and y are degrees, z is a length
+  glm::dvec3 axis_scale{1};    ///< factors applied to the points
 };
 
 /// Adds notes that are not in the list yet: all pieces of a file may produce the same note.

@@ -201,13 +201,13 @@ bool SurfaceEars::is_free(const Ear& ear) {
   for (const glm::dvec3& p : places) low = glm::min(low, p), high = glm::max(high, p);
   const glm::dvec3 margin = 1e-6 * (high - low) + glm::dvec3(1e-9 * glm::length(high - low));
   low -= margin, high += margin;
-  const auto is_beside = [&](const glm::dvec3& a, const glm::dvec3& b) {
+  const auto is_outside = [&](const glm::dvec3& a, const glm::dvec3& b) {
     for (int axis = 0; axis < 3; ++axis)
       if ((a[axis] < low[axis] && b[axis] < low[axis]) || (a[axis] > high[axis] && b[axis] > high[axis])) return true;
     return false;
   };
   for (const std::uint32_t v : corners_)
-    if (!is_beside(p_[v], p_[v]) && !holds_corner(ear.corner, v) && holds(places, p_[v])) return false;
+    if (!is_outside(p_[v], p_[v]) && !holds_corner(ear.corner, v) && holds(places, p_[v])) return false;
   for (std::size_t side = 0; side < 2; ++side) {
     if (is_there[side]) continue;
     const CornerTriangle& t = sides[side];
@@ -215,7 +215,7 @@ bool SurfaceEars::is_free(const Ear& ear) {
       if (k > 0 && edges_[k].corners == edges_[k - 1].corners) continue;
       const auto u = static_cast<std::uint32_t>(edges_[k].corners >> 32),
                  v = static_cast<std::uint32_t>(edges_[k].corners);
-      if (is_beside(p_[u], p_[v]) || holds_corner(t, u) || holds_corner(t, v)) continue;
+      if (is_outside(p_[u], p_[v]) || holds_corner(t, u) || holds_corner(t, v)) continue;
       if (crosses(p_[u], p_[v], p_[t[0]], p_[t[1]], p_[t[2]])) return false;
     }
   }

@@ -40,7 +40,7 @@ void move_points(CellBlock& block, const BlockField& vector, double factor) {
   }
 }
 
-scene::Error no_such_vector(const std::string& name, std::span<const std::string> names, const std::string& source) {
+scene::Error unknown_vector(const std::string& name, std::span<const std::string> names, const std::string& source) {
   if (names.empty())
     return scene::bad_input(
         fmt::format("{}: `warp`: it has no vectors at its points, so '{}' is not one; leave it out", source, name));
@@ -78,7 +78,7 @@ void warp(MeshBlocks& read, const ReadOptions& options, const std::string& sourc
         ++moved;
         break;
       }
-  if (moved == 0 && !read.blocks.empty()) throw no_such_vector(by.vector, point_vectors(read), source);
+  if (moved == 0 && !read.blocks.empty()) throw unknown_vector(by.vector, point_vectors(read), source);
   if (moved == 0) return;
   add_notes({by.factor == 1 ? fmt::format("nodes are displaced by '{}'", by.vector)
                             : fmt::format("nodes are displaced by {:g} times '{}'", by.factor, by.vector)},

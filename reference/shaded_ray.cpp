@@ -211,18 +211,18 @@ class Reference::Ray {
       return marks;
     }
     std::ranges::stable_sort(marks, {}, [axis](const Mark& m) { return m.slope[axis].value; });
-    std::vector<Mark> ordered, alike;
-    const auto take_alike = [&] {
-      for (const Mark& mark : in_order(std::exchange(alike, {}), axis + 1)) ordered.push_back(mark);
+    std::vector<Mark> ordered, equal;
+    const auto take_equal = [&] {
+      for (const Mark& mark : in_order(std::exchange(equal, {}), axis + 1)) ordered.push_back(mark);
     };
     for (const Mark& mark : marks) {
-      if (!alike.empty()) {
-        const Slope &from = alike.front().slope[axis], &to = mark.slope[axis];
-        if (to.value - from.value > from.error + to.error) take_alike();
+      if (!equal.empty()) {
+        const Slope &from = equal.front().slope[axis], &to = mark.slope[axis];
+        if (to.value - from.value > from.error + to.error) take_equal();
       }
-      alike.push_back(mark);
+      equal.push_back(mark);
     }
-    take_alike();
+    take_equal();
     return ordered;
   }
 

@@ -131,8 +131,8 @@ ProjectionKind projection_of(const Json& body, ProjectionKind otherwise) {
 Json json_of(const Camera& camera) { return Json::parse(camera_json({camera, std::nullopt})); }
 
 bool is_logarithmic(const ApiContext& context, const OpenScene& open) {
-  const auto said = open.state.find("log");
-  return said == open.state.end() ? context.reader.fixes("log") : *said == true;
+  const auto entry = open.state.find("log");
+  return entry == open.state.end() ? context.reader.fixes("log") : *entry == true;
 }
 
 Json data_answer(const ApiContext& context, const OpenScene& open) {

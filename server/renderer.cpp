@@ -140,21 +140,21 @@ Renderer::Renderer(SceneReader& reader, Job& job, const RendererSettings& settin
       long_queue_(settings.latency_ms),
       stage_(
           reader, job, settings.memory_bytes, [this] { data_came(); },
-          [this](const Reading& reading) { say_reading(reading); }) {}
+          [this](const Reading& reading) { report_reading(reading); }) {}
 
 Renderer::~Renderer() = default;
 
 void Renderer::data_came() {
-  if (!first_came_.exchange(true)) queue_.tell_all(R"({"type":"data"})");
-  queue_.tell_waiting(R"({"type":"data"})");
+  if (!first_came_.exchange(true)) queue_.send_to_all(R"({"type":"data"})");
+  queue_.send_to_waiting(R"({"type":"data"})");
   queue_.wake();
 }
 
-void Renderer::say_reading(const Reading& reading) {
+void Renderer::report_reading(const Reading& reading) {
   const auto now = Clock::now();
-  if (ms_between(told_reading_, now) < 200) return;
-  told_reading_ = now;
-  first_came_ ? queue_.tell_waiting(reading_text(reading)) : queue_.tell_all(reading_text(reading));
+  if (ms_between(reading_reported_, now) < 200) return;
+  reading_reported_ = now;
+  first_came_ ? queue_.send_to_waiting(reading_text(reading)) : queue_.send_to_all(reading_text(reading));
 }
 
 void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
@@ -183,7 +183,7 @@ void Renderer::message(ClientId client, const std::string& text) {
     if (const auto* ack = std::get_if<AckMessage>(&message)) return queue_.acknowledge(client, ack->frame);
     queue_.pause(client);
   } catch (...) {
-    queue_.tell(client, text_of({{"type", "error"}, {"error", error_of(std::current_exception()).what()}}));
+    queue_.send(client, text_of({{"type", "error"}, {"error", error_of(std::current_exception()).what()}}));
   }
 }
 
@@ -222,7 +222,9 @@ void Renderer::end() {
   long_queue_.end();
 }
 
-void Renderer::say_end(const std::string& reason) { queue_.tell_all(text_of({{"type", "ended"}, {"error", reason}})); }
+void Renderer::announce_end(const std::string& reason) {
+  queue_.send_to_all(text_of({{"type", "ended"}, {"error", reason}}));
+}
 
 FrameOutcome Renderer::render(const FrameOrder& order) {
   FrameOutcome outcome;

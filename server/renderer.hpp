@@ -34,7 +34,7 @@ class Renderer final : public Service {
   /// May be called from any thread: run() returns soon.
   void end();
   /// Sends the reason why the server ends to the clients.
-  void say_end(const std::string& reason);
+  void announce_end(const std::string& reason);
   [[nodiscard]] bool is_reading() { return stage_.reading().has_value(); }
 
   void answer(Request request, std::stop_token gone, Reply reply) override;
@@ -47,7 +47,7 @@ class Renderer final : public Service {
   FrameOutcome make_frame(const FrameOrder& order);
   /// Reads the data that the server was started with.
   void read_first();
-  void say_reading(const Reading& reading);
+  void report_reading(const Reading& reading);
   void data_came();
 
   SceneReader& reader_;
@@ -58,7 +58,7 @@ class Renderer final : public Service {
   LongProgress film_, picture_;
   std::atomic<bool> first_came_ = false;
   std::uint64_t frames_ = 0;
-  Clock::time_point told_reading_;
+  Clock::time_point reading_reported_;
 };
 
 }  // namespace tessera::server

@@ -74,7 +74,7 @@ void serve(const ServeOptions& options, SceneReader& reader, Job& job, const Ser
   Listener listener(options.network, access, renderer);
   EndWatch watch([&] {
     const bool is_lost = job.size() > 1 && !renderer.is_reading();
-    renderer.say_end(is_lost ? "A rank of the server was lost; start it again." : "The server was ended.");
+    renderer.announce_end(is_lost ? "A rank of the server was lost; start it again." : "The server was ended.");
     listener.finish();
     is_lost ? events.rank_lost() : events.ended_at_work();
   });
@@ -90,11 +90,11 @@ void serve(const ServeOptions& options, SceneReader& reader, Job& job, const Ser
     renderer.run();
   } catch (...) {
     renderer.end();
-    renderer.say_end(reader.worded(error_of(std::current_exception()).what()));
+    renderer.announce_end(reader.worded(error_of(std::current_exception()).what()));
     listener.finish();
     throw;
   }
-  renderer.say_end("The server was ended.");
+  renderer.announce_end("The server was ended.");
   listener.finish();
   if (renderer.is_reading()) events.ended_at_work();
 }

@@ -6,11 +6,11 @@
 
 namespace tessera::server {
 
-/// While it exists, the first SIGINT, SIGTERM or SIGHUP of this process calls `heard`, any further one `again` with its
+/// While it exists, the first SIGINT, SIGTERM or SIGHUP of this process calls `first`, any further one `again` with its
 /// number, on its own thread. A SIGHUP that the caller ignores (nohup) stays ignored.
 class Signals {
  public:
-  Signals(std::function<void()> heard, std::function<void(int signal)> again);
+  Signals(std::function<void()> first, std::function<void(int signal)> again);
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;

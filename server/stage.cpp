@@ -114,7 +114,7 @@ void Stage::keep(const Scene& scene, Dataset data) {
     }
     const std::string key = at->keys.front();
     ++at;
-    tell({{"do", "drop"}, {"key", key}});
+    send_order({{"do", "drop"}, {"key", key}});
     drop(key);
   }
 }
@@ -162,7 +162,7 @@ void Stage::read_in_background(std::shared_ptr<const Scene> scene) {
   progress_(*reading());
   reading_thread_ = std::thread([this, scene = std::move(scene)] {
     Arrived arrived{scene, std::nullopt, std::nullopt};
-    const auto heard = [this](const ReadProgress& progress) {
+    const auto on_progress = [this](const ReadProgress& progress) {
       Reading now{std::string(stage_words(progress.stage)) + " " + reader_.input_name(), progress.done};
       if (progress.stage == ReadProgress::Stage::filling) now.fraction.reset();
       {
@@ -172,7 +172,7 @@ void Stage::read_in_background(std::shared_ptr<const Scene> scene) {
       progress_(now);
     };
     try {
-      arrived.data = scene->open(Communicator(), heard);
+      arrived.data = scene->open(Communicator(), on_progress);
     } catch (...) {
       arrived.error = error_of(std::current_exception());
     }
@@ -202,7 +202,7 @@ void Stage::read_together(const Json& state, const Scene& scene) {
     reading_.reset();
   };
   try {
-    tell({{"do", "open"}, {"state", state}});
+    send_order({{"do", "open"}, {"state", state}});
     keep(scene, open_together(scene));
   } catch (...) {
     end();
@@ -253,7 +253,7 @@ void Stage::make_preview_together(const Json& state, HeldData& held) {
   held.preview_tried = true;
   const bool is_first = job_.rank() == 0;
   if (held.data.is_grid() && !is_first) return;  // for a grid every rank has all samples
-  tell({{"do", "preview"}, {"state", state}});
+  send_order({{"do", "preview"}, {"state", state}});
   try {
     std::optional<Dataset> made = coarse_preview(held.data, {}, {}, job_.communicator());
     if (is_first) held.preview = std::move(made);
@@ -355,11 +355,11 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
                             const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
   check_size(view.size);
   if (ranks() > 1)
-    tell({{"do", "render"},
-          {"state", state},
-          {"width", view.size.width},
-          {"height", view.size.height},
-          {"uncertainty", settings.keep_uncertainty}});
+    send_order({{"do", "render"},
+                {"state", state},
+                {"width", view.size.width},
+                {"height", view.size.height},
+                {"uncertainty", settings.keep_uncertainty}});
   try {
     Session& used = session(state, scene, held);
     static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times were not requested
@@ -372,13 +372,13 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
 
 RayProbe Stage::probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
                       std::size_t samples) {
-  tell({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
+  send_order({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
   const LoadedTransferFunction& loaded = function(held, scene);
   return tessera::probe(held.data, view, loaded.function, pixel, samples, scene.settings(held.data, loaded),
                         job_.communicator());
 }
 
-void Stage::tell(const Json& order) {
+void Stage::send_order(const Json& order) {
   if (ranks() == 1 || job_.rank() != 0) return;
   const std::string text = order.dump();
   std::vector<std::byte> bytes(text.size());
@@ -387,15 +387,15 @@ void Stage::tell(const Json& order) {
 }
 
 void Stage::end() {
-  tell({{"do", "end"}});
-  hear_all();
+  send_order({{"do", "end"}});
+  synchronize_ranks();
 }
 
-void Stage::hear_all() {
+void Stage::synchronize_ranks() {
   for (int rank = 1; rank < ranks(); ++rank) job_.broadcast(rank, {});
 }
 
-void Stage::obey(const Json& order) {
+void Stage::execute(const Json& order) {
   if (order.at("do") == "drop") return drop(order.at("key").get<std::string>());
   const Json& state = order.at("state");
   const auto scene = reader_.scene(state);
@@ -424,9 +424,9 @@ void Stage::follow() {
     std::string text(bytes.size(), '\0');
     std::memcpy(text.data(), bytes.data(), bytes.size());
     const Json order = Json::parse(text);
-    if (order.at("do") == "end") return hear_all();
+    if (order.at("do") == "end") return synchronize_ranks();
     try {
-      obey(order);
+      execute(order);
     } catch (const Error& error) {
       // All ranks get the same errors when opening data, and for bad input: the first rank reports them to its client.
       if (error.code() != ErrorCode::bad_input && order.at("do") != "open") throw;

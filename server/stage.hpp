@@ -133,9 +133,9 @@ class Stage {
   Dataset open_together(const Scene& scene);
   void read_together(const Json& state, const Scene& scene);
   /// Returns when all ranks have called it.
-  void hear_all();
-  void tell(const Json& order);
-  void obey(const Json& order);
+  void synchronize_ranks();
+  void send_order(const Json& order);
+  void execute(const Json& order);
 
   SceneReader& reader_;
   Job& job_;

@@ -193,17 +193,17 @@ void WorkQueue::wake() {
   changed_.notify_one();
 }
 
-void WorkQueue::tell(ClientId client, const std::string& text) {
+void WorkQueue::send(ClientId client, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (const auto found = clients_.find(client); found != clients_.end()) found->second.channel->send_text(text);
 }
 
-void WorkQueue::tell_all(const std::string& text) {
+void WorkQueue::send_to_all(const std::string& text) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, client] : clients_) client.channel->send_text(text);
 }
 
-void WorkQueue::tell_waiting(const std::string& text) {
+void WorkQueue::send_to_waiting(const std::string& text) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, client] : clients_)
     if (client.waits) client.channel->send_text(text);

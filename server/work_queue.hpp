@@ -90,11 +90,11 @@ class WorkQueue {
 
   /// Data have arrived, or could not be read: clients and tasks that waited for them try again.
   void wake();
-  void tell(ClientId client, const std::string& text);
+  void send(ClientId client, const std::string& text);
   /// Sends to all clients.
-  void tell_all(const std::string& text);
+  void send_to_all(const std::string& text);
   /// Sends to clients that wait for data.
-  void tell_waiting(const std::string& text);
+  void send_to_waiting(const std::string& text);
   /// After this call next() returns none; current work is asked to stop, and tasks are abandoned.
   void end();
   [[nodiscard]] bool ended();

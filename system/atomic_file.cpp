@@ -26,7 +26,7 @@ fs::path part_name(const fs::path& target, unsigned number) {
   return folder_of(target) / fmt::format(".tessera-{}-{}.part", ::getpid(), number);
 }
 
-bool user_can_mend(int error_number) {
+bool user_can_fix(int error_number) {
   switch (error_number) {
     case EACCES:
     case EPERM:
@@ -190,9 +190,9 @@ void AtomicFile::fail(int error_number, const char* doing) const {
     default:
       break;
   }
-  const OutputFault fault(user_can_mend(error_number) ? ErrorCode::bad_input : ErrorCode::system_failure, target_,
+  const OutputFault fault(user_can_fix(error_number) ? ErrorCode::bad_input : ErrorCode::system_failure, target_,
                           fmt::format("{}: {}", doing, std::generic_category().message(error_number)), remedy);
-  if (begun_ && user_can_mend(error_number)) throw fault.since_changed();
+  if (begun_ && user_can_fix(error_number)) throw fault.since_changed();
   throw fault;
 }
 

@@ -10,11 +10,11 @@ namespace tessera::system {
 SpawnPlan::SpawnPlan(std::initializer_list<int> blocked) {
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawnattr_init(&attributes_);
-  sigset_t deaf, all;
-  ::sigemptyset(&deaf);
-  for (const int signal : blocked) ::sigaddset(&deaf, signal);
+  sigset_t blocked_set, all;
+  ::sigemptyset(&blocked_set);
+  for (const int signal : blocked) ::sigaddset(&blocked_set, signal);
   ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&attributes_, &deaf);
+  ::posix_spawnattr_setsigmask(&attributes_, &blocked_set);
   ::posix_spawnattr_setsigdefault(&attributes_, &all);
 }
 

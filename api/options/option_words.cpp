@@ -54,8 +54,8 @@ bool OptionRow::has_name(std::string_view name) const {
 }
 
 std::vector<std::string_view> OptionRow::choices() const {
-  const auto stands_for_others = [](char c) { return is_upper(c) || c == ':' || c == '['; };
-  if (std::ranges::any_of(value, stands_for_others)) return {};
+  const auto is_placeholder = [](char c) { return is_upper(c) || c == ':' || c == '['; };
+  if (std::ranges::any_of(value, is_placeholder)) return {};
   return split_words(value, "|");
 }
 

@@ -147,10 +147,10 @@ class Check {
   /// The intervals are roughly the parts' shares of the time, measured for a mesh of 1.6 million tets.
   void begin_part(double begin, double end) {
     part_begin_ = begin, part_length_ = end - begin;
-    tell(0, 1);
+    report(0, 1);
   }
   /// Reports that `n` of the part's `count` steps are done.
-  void tell(std::size_t n, std::size_t count) const {
+  void report(std::size_t n, std::size_t count) const {
     constexpr std::size_t steps = 1 << 15;
     if (progress_ && n % steps == 0)
       progress_(part_begin_ + part_length_ * static_cast<double>(n) / static_cast<double>(count));
@@ -197,7 +197,7 @@ class Check {
     solid_.assign(mesh_.tets.size(), 0);
     std::vector<std::pair<double, std::size_t>> worst;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      tell(t, mesh_.tets.size());
+      report(t, mesh_.tets.size());
       const Corners c = corners_of(mesh_, t);
       const double determinant = relative_determinant(c);
       if (std::abs(determinant) <= flat_determinant) {
@@ -243,7 +243,7 @@ class Check {
     std::vector<Face> faces;
     faces.reserve(4 * mesh_.tets.size());
     for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t) {
-      tell(t, mesh_.tets.size());
+      report(t, mesh_.tets.size());
       for (std::uint8_t k = 0; k < 4; ++k) {
         const scene::Tet& v = mesh_.tets[t];
         std::array<std::uint32_t, 3> p{name_[v[(k + 1u) % 4]], name_[v[(k + 2u) % 4]], name_[v[(k + 3u) % 4]]};
@@ -285,7 +285,7 @@ class Check {
     const BoxTree tree(boxes);
     std::vector<std::uint8_t> found(boundary_.size(), 0);
     for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
-      tell(i, boundary_.size());
+      report(i, boundary_.size());
       const auto a = triangle(boundary_[i]);
       const glm::dvec3 cross = glm::cross(a[1] - a[0], a[2] - a[0]);
       const double area = glm::length(cross);
@@ -351,7 +351,7 @@ class Check {
     };
     for (const auto& [a, b] : seeds_) consider(a, b);
     for (std::size_t i = 0; i < boundary_.size(); ++i) {
-      tell(i, boundary_.size());
+      report(i, boundary_.size());
       const std::uint32_t tet = boundary_[i].tet;
       tree.visit(box_of(triangle(boundary_[i])), [&](std::uint32_t t) { consider(tet, t); });
     }

@@ -86,8 +86,8 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
     std::vector<volume::UncertainRay> rays;
     rays.reserve(pixels.size());
     for (const auto& [x, y] : pixels) rays.push_back({x, y, -infinity, infinity, 0});
-    scene::FrameWatch nobody;
-    volume::ImageSink sink(again, nullptr, nobody);
+    scene::FrameWatch unwatched;
+    volume::ImageSink sink(again, nullptr, unwatched);
     volume::VoxelCaster(source, camera, image.size, function, cast).cast(rays, sink);
   });
   SuspicionMap map(image.depth.size(), 0.0f);

@@ -169,14 +169,14 @@ bool CurvedCells::take_too_many() const {
   return false;
 }
 
-void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
+void CurvedCells::tally_excess(const std::function<void(double)>& report) const {
   CurvedWork work(settings_.tolerance);
   for (std::size_t c = 0; c < block_.types.size() && !lattices_.empty(); ++c) {
     const CurvedLattice* const curved = lattice(c);
     if (curved == nullptr) continue;
     begin(c, work);
     if (is_finite(work))
-      work.splitter.tally_excess(*curved, work.positions, work.values, work.weights, work.first, say);
+      work.splitter.tally_excess(*curved, work.positions, work.values, work.weights, work.first, report);
   }
 }
 

@@ -55,7 +55,7 @@ class CurvedCells {
   void split(std::size_t cell, CurvedWork& work) const;
 
   /// Passes the deviation of the edges, in tolerances, for each initial tet of all cells.
-  void tally_excess(const std::function<void(double excess)>& say) const;
+  void tally_excess(const std::function<void(double excess)>& report) const;
 
   /// Whether the cells become more tets than the settings allow, determined by dividing them.
   [[nodiscard]] bool take_too_many() const;

@@ -114,7 +114,7 @@ void CurvedSplitter::make_net(const Tet& tet) {
 
 void CurvedSplitter::tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
                                   std::span<const double> values, std::span<const double> weights,
-                                  std::span<const Tet> first, const std::function<void(double)>& say) {
+                                  std::span<const Tet> first, const std::function<void(double)>& report) {
   begin(lattice, positions, values, weights);
   for (const Tet& tet : first) {
     double worst = 0;
@@ -122,7 +122,7 @@ void CurvedSplitter::tally_excess(const CurvedLattice& lattice, std::span<const 
       worst = std::max<double>(worst, edge(tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]).excess);
     // Nodes within faces and cells curve the interior even between straight edges.
     if (lattice.has_bubbles || worst <= 1) worst = std::max(worst, excess_of(departures(tet)) / room_inside(degree_));
-    say(cell_.is_polynomial() ? worst : worst_of_fractions * worst);
+    report(cell_.is_polynomial() ? worst : worst_of_fractions * worst);
   }
 }
 

@@ -74,7 +74,7 @@ class CurvedSplitter {
   /// need more tets than one of a polynomial.
   void tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
                     std::span<const double> weights, std::span<const scene::Tet> first,
-                    const std::function<void(double excess)>& say);
+                    const std::function<void(double excess)>& report);
 
  private:
   using Corners = std::span<const std::uint32_t>;

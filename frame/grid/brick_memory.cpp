@@ -51,7 +51,7 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
          volume::BrickCache::bytes_of_table({geometry, settings.grid.brick_size, settings.grid.edge_bricks});
 }
 
-std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick) {
+std::uint64_t brick_memory(std::uint64_t memory, const OtherMemory& rest, std::uint64_t brick) {
   constexpr std::uint64_t mib = 1 << 20, least = 8 * mib, a_thread = 2 * mib, heap = 8 * mib;
   constexpr std::uint64_t a_pixel = 5 * sizeof(float);  // RGBA and depth
   const auto threads = static_cast<std::uint64_t>(scene::threads_for(rest.threads));

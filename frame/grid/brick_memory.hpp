@@ -14,7 +14,7 @@ namespace tessera::frame {
 std::uint64_t resident_bytes();
 
 /// What a process holds in addition to bricks.
-struct BesideBricks {
+struct OtherMemory {
   std::uint64_t resident = 0;  ///< now: the program and what it has read, including ranges of cells
   std::uint64_t frames = 0;    ///< data of frames about cells and bricks: bytes_of_frames()
   scene::ImageSize picture;
@@ -29,6 +29,6 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
 /// The part of a process's `memory` that remains for bricks of `brick` bytes: without `rest`, the image and its copy
 /// during output, each thread's data for its tiles, and what the heap and the cache add to each brick. At least 8 MiB,
 /// or all of `memory` if that is less: the program itself exceeds a small budget.
-std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick);
+std::uint64_t brick_memory(std::uint64_t memory, const OtherMemory& rest, std::uint64_t brick);
 
 }  // namespace tessera::frame

@@ -33,7 +33,7 @@ void note(const RegionHeader& header, int rank, FinishedVolumeFrame& finished) {
 
 }  // namespace
 
-void tell(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
+void report_region(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
   if (finished.stopped || watch.stopped() || rect.empty()) return;
   try {
     watch.finished(rect, finished.image);
@@ -109,7 +109,7 @@ void RegionGather::place(const exchange::Message& message, std::uint64_t frame, 
   }
   reader.finish();
   for (const PixelRect& r : rectangles)
-    if (header.stopped == 0) tell(watch, r, finished);
+    if (header.stopped == 0) report_region(watch, r, finished);
   finished.statistics += header.counters;
   note(header, message.from, finished);
 }

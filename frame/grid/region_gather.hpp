@@ -32,6 +32,6 @@ class RegionGather {
 };
 
 /// Reports pixels that are final on rank 0 to `watch`; if it throws FrameStopped, the frame stops.
-void tell(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished);
+void report_region(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished);
 
 }  // namespace tessera::frame

@@ -66,7 +66,7 @@ Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   append_text(message, volume.tags.length_unit);
   append(message, static_cast<std::uint8_t>(volume.tags.labels));
   append_time_step(message, volume.time_step);
-  append(message, std::uint8_t{volume.beside_degrees});
+  append(message, std::uint8_t{volume.xy_in_degrees});
   return message;
 }
 
@@ -91,7 +91,7 @@ io::VolumeFile description_in(MessageReader& reader) {
   volume.tags.length_unit = reader.take_text();
   volume.tags.labels = reader.take<std::uint8_t>() != 0;
   volume.time_step = take_time_step(reader);
-  volume.beside_degrees = reader.take<std::uint8_t>() != 0;
+  volume.xy_in_degrees = reader.take<std::uint8_t>() != 0;
   reader.finish();
   return volume;
 }

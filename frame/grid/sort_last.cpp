@@ -83,7 +83,7 @@ class SortLast::State {
     made.finished.parts = split_->boxes();
     if (rank == 0) {
       made.finished.stopped = sent.stopped;
-      tell(watch, made.header.region, made.finished);
+      report_region(watch, made.header.region, made.finished);
       made.header.stopped = made.finished.stopped ? 1 : 0;
     }
     return made;

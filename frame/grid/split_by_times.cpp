@@ -28,12 +28,12 @@ bool is_near(const scene::Camera& camera, const scene::Camera& other, const scen
 void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks) {
   if (!std::ranges::all_of(ranks, &CastTimes::whole)) return;
   std::vector<volume::TileTime> tiles;
-  std::vector<double> beside, tiles_of;
+  std::vector<double> other_work, tiles_of;
   tiles_ = 0;
   for (const CastTimes& times : ranks) {
     double own = 0;
     for (const volume::TileTime& time : times.tiles) own += 1e3 * static_cast<double>(time.microseconds);
-    beside.push_back(std::max(0.0, 1e9 * times.cpu_seconds - own));
+    other_work.push_back(std::max(0.0, 1e9 * times.cpu_seconds - own));
     tiles.insert(tiles.end(), times.tiles.begin(), times.tiles.end());
     tiles_of.push_back(own);
     tiles_ += own;
@@ -41,15 +41,16 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
   // If ranks share a process, its CPU time cannot be attributed to one of them.
   for (auto rank = ranks.begin(); rank != ranks.end(); ++rank)
     if (std::any_of(ranks.begin(), rank, [&](const CastTimes& other) { return other.process == rank->process; }))
-      beside.assign(ranks.size(), 0.0);
-  beside_.resize(ranks.size());
+      other_work.assign(ranks.size(), 0.0);
+  other_work_.resize(ranks.size());
   ++pictures_;
   // The first frames differ from all others: no earlier frame is gathered in parallel, and memory is new. Later frames
   // have little weight, since gathering one may coincide with another.
   const double weight = std::max(0.2, 1.0 / std::max(1, pictures_ - 2));
-  for (std::size_t rank = 0; rank < beside.size(); ++rank) beside_[rank] += weight * (beside[rank] - beside_[rank]);
+  for (std::size_t rank = 0; rank < other_work.size(); ++rank)
+    other_work_[rank] += weight * (other_work[rank] - other_work_[rank]);
   if (tiles.empty()) return;
-  compare_with_foreseen(tiles_of);
+  compare_with_prediction(tiles_of);
   if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
     costs_.emplace(job.camera, job.size, 0.5 * (box.low + box.high));
   else
@@ -57,40 +58,40 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
   costs_->learn(tiles);
 }
 
-void SplitByTimes::compare_with_foreseen(const std::vector<double>& tiles_of) {
-  if (foreseen_.empty() || tiles_ <= 0) {
+void SplitByTimes::compare_with_prediction(const std::vector<double>& tiles_of) {
+  if (predicted_.empty() || tiles_ <= 0) {
     missed_.assign(tiles_of.size(), 0.0);
     return;
   }
-  const double all = std::accumulate(foreseen_.begin(), foreseen_.end(), 0.0);
+  const double all = std::accumulate(predicted_.begin(), predicted_.end(), 0.0);
   for (std::size_t rank = 0; rank < tiles_of.size(); ++rank)
-    missed_[rank] += part_of_missed * (tiles_of[rank] / tiles_ - foreseen_[rank] / all - missed_[rank]);
+    missed_[rank] += part_of_missed * (tiles_of[rank] / tiles_ - predicted_[rank] / all - missed_[rank]);
 }
 
 std::vector<double> SplitByTimes::weights() const {
   const double each =
-      (tiles_ + std::accumulate(beside_.begin(), beside_.end(), 0.0)) / static_cast<double>(beside_.size());
+      (tiles_ + std::accumulate(other_work_.begin(), other_work_.end(), 0.0)) / static_cast<double>(other_work_.size());
   std::vector<double> weights;
   if (tiles_ > 0)
-    for (const double beside : beside_) weights.push_back(std::max(0.1, 1 - beside / each));
+    for (const double other_work : other_work_) weights.push_back(std::max(0.1, 1 - other_work / each));
   return weights;
 }
 
 std::optional<volume::ImageSplit> SplitByTimes::find(const VolumeJob& job, const scene::Box& box) {
-  foreseen_.clear();
+  predicted_.clear();
   if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
     return std::nullopt;
   volume::TileCosts costs = *costs_;
   costs.turn_to(job.camera);
   costs.sum();
-  std::vector<double> more = beside_;
+  std::vector<double> more = other_work_;
   const double all = costs.of({0, 0, job.size.width, job.size.height});
   for (std::size_t rank = 0; rank < more.size(); ++rank) more[rank] += missed_[rank] * all;
   const volume::ImageSplit split = volume::balanced_split(costs, more);
   for (int rank = 0; rank < split.processes(); ++rank) {
     double cost = 0;
     for (const scene::PixelRect& part : split.parts(rank)) cost += costs.of(part);
-    foreseen_.push_back(cost);
+    predicted_.push_back(cost);
   }
   return split;
 }

@@ -38,14 +38,14 @@ class SplitByTimes {
 
  private:
   /// Learns `missed_` from the time of each rank's tiles, nanoseconds.
-  void compare_with_foreseen(const std::vector<double>& tiles_of);
+  void compare_with_prediction(const std::vector<double>& tiles_of);
 
   std::optional<volume::TileCosts> costs_;
-  int pictures_ = 0;              ///< frames learned from
-  double tiles_ = 0;              ///< nanoseconds of the last frame
-  std::vector<double> beside_;    ///< nanoseconds of each rank, excluding its tiles
-  std::vector<double> foreseen_;  ///< predicted nanoseconds of each rank's tiles in the last split; empty: none
-  std::vector<double> missed_;    ///< how much each rank's share of the time of all tiles exceeds the prediction
+  int pictures_ = 0;                ///< frames learned from
+  double tiles_ = 0;                ///< nanoseconds of the last frame
+  std::vector<double> other_work_;  ///< nanoseconds of each rank, excluding its tiles
+  std::vector<double> predicted_;   ///< predicted nanoseconds of each rank's tiles in the last split; empty: none
+  std::vector<double> missed_;      ///< how much each rank's share of the time of all tiles exceeds the prediction
 };
 
 /// Whether rays go through the box in nearly the same directions as in another view of it: within `most` radians, and

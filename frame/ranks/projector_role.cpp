@@ -20,7 +20,7 @@ namespace {
 using exchange::Channel;
 
 /// Waits until one more frame has left the assembling rank.
-void await_frame(const DistributedRun& run) {
+void wait_for_frame(const DistributedRun& run) {
   exchange::MessageReader(run.transport.receive(Channel::frames), exchange::MessageKind::frame_left).finish();
 }
 
@@ -29,7 +29,7 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   const auto in_flight = static_cast<std::size_t>(run.settings.render.ranks.frames_in_flight);
   if (frame < left + in_flight) return;
   const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(run.first + frame));
-  for (; frame >= left + in_flight; ++left) await_frame(run);
+  for (; frame >= left + in_flight; ++left) wait_for_frame(run);
 }
 
 /// The index of this rank among the projectors, 0 .. N-1.
@@ -224,7 +224,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     if (trace != nullptr) trace->add_frame(number, start_us);
   }
   // The next list begins without frames in progress.
-  for (; left < run.jobs.size(); ++left) await_frame(run);
+  for (; left < run.jobs.size(); ++left) wait_for_frame(run);
 }
 
 }  // namespace tessera::frame

@@ -72,7 +72,7 @@ void require_real_name(const std::filesystem::path& file) {
         fmt::format("{}: HDF5 files cannot be read from gzip; unpack it with gunzip", file.string()));
 }
 
-void require_beside_others(const std::filesystem::path& file) {
+void require_uncompressed(const std::filesystem::path& file) {
   if (is_inflated(file))
     throw scene::bad_input(
         fmt::format("{}: it goes with other files, which cannot be found from within a gzip file; unpack it with "

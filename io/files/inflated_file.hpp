@@ -58,6 +58,6 @@ std::uint64_t packed_size(const std::filesystem::path& inflated);
 void require_real_name(const std::filesystem::path& file);
 
 /// For files that refer to other files in their directory: throws Error(bad_input) for one that was in a gzip file.
-void require_beside_others(const std::filesystem::path& file);
+void require_uncompressed(const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -116,7 +116,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   VolumeFile result;
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
-  result.beside_degrees = opened.contents.beside_degrees;
+  result.xy_in_degrees = opened.contents.xy_in_degrees;
   scene::Grid grid;
   grid.geometry = geometry_of(opened, part);
   result.format = opened.contents.format;

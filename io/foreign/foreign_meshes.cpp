@@ -61,7 +61,7 @@ ForeignFile open_exodus(const InputFile& file, const char* reader, const MeshOpt
 }
 
 std::vector<Plot3dStep> steps_of_list(const InputFile& file) {
-  require_beside_others(file.path);
+  require_uncompressed(file.path);
   return parse_plot3d_list(read_text_file(file.path), file.path);
 }
 
@@ -96,7 +96,7 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options
   }
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
-  if (type.starts_with('P')) require_beside_others(file.path);
+  if (type.starts_with('P')) require_uncompressed(file.path);
   cells::MeshBlocks result = named_format(*kind, extension);
   cells::MeshBlocks read = read_data_set(file, type, options);
   cells::add_notes(read.notes, result.notes);
@@ -133,12 +133,12 @@ cells::MeshBlocks read_hdf5(const InputFile& file, const MeshOptions& options) {
 }
 
 cells::MeshBlocks read_openfoam(const InputFile& file, const MeshOptions& options) {
-  require_beside_others(file.path);
+  require_uncompressed(file.path);
   return read_foreign_mesh(file, {Reader::vtk, "openfoam"}, options);
 }
 
 cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options) {
-  require_beside_others(file.path);
+  require_uncompressed(file.path);
   return read_foreign_mesh(file, {Reader::vtk, "ensight"}, options);
 }
 

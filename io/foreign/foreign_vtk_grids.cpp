@@ -21,7 +21,7 @@ namespace {
 /// Reads the whole grid into memory.
 VolumeFile read_vtk_grid(const InputFile& file, const VolumeOptions& options) {
   const std::string type = vtk_xml_type(file.beginning);  // empty for a legacy file
-  if (type.starts_with('P')) require_beside_others(file.path);
+  if (type.starts_with('P')) require_uncompressed(file.path);
   std::optional<ForeignFile> opened;
   if (type == "ImageData" || type == "RectilinearGrid") opened = open_vtk_xml(file.path, options.progress);
   if (!opened) {

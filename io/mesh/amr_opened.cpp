@@ -63,7 +63,7 @@ OpenedAmr open_hyper_trees(const InputFile& input) {
     amr.add(open_foreign(helper, file, {{"reader", "hyper_trees"}}));
     return amr;
   }
-  require_beside_others(file);
+  require_uncompressed(file);
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
     if (element.name != "Piece") return;
     const std::string* const piece = element.find("Source");

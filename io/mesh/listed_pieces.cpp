@@ -120,7 +120,7 @@ bool lists_pieces(const InputFile& file) {
 
 PieceList piece_list(const InputFile& input, const cells::BlockChoice& choice, bool with_surfaces) {
   const std::filesystem::path& file = input.path;
-  require_beside_others(file);
+  require_uncompressed(file);
   PieceList list;
   list.with_surfaces = with_surfaces;
   list.of = input.format;

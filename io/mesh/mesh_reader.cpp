@@ -63,8 +63,8 @@ cells::MeshBlocks read_unscaled_blocks(const InputFile& file, const MeshOptions&
 
 cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
   cells::MeshBlocks read = read_unscaled_blocks(file, options);
-  const Box box = read.beside_degrees ? cells::box_of_points(read.blocks) : Box();
-  read.axis_scale = cells::chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
+  const Box box = read.xy_in_degrees ? cells::box_of_points(read.blocks) : Box();
+  read.axis_scale = cells::chosen_scale(options.axis_scale, read.xy_in_degrees, box, read.notes);
   cells::scale_blocks(read.blocks, read.axis_scale);
   return read;
 }

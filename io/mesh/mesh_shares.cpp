@@ -113,7 +113,7 @@ bool has_shares(const InputFile& file) {
 cells::MeshBlocks read_share(const InputFile& file, const ReadOptions& options, int part, int parts) {
   if (const auto files = exodus_files(file); !files.empty())
     return read_exodus_files(files, file.format, options, part, parts);
-  require_beside_others(file.path);
+  require_uncompressed(file.path);
   nlohmann::json request = request_for(file.format->share_reader, options);
   request["part"] = part;
   request["parts"] = parts;

@@ -214,7 +214,7 @@ class NastranDeck {
       name = name.substr(quote + 1);
       name = name.substr(0, name.find(mark));
     }
-    require_beside_others(from);
+    require_uncompressed(from);
     std::error_code unknown;
     const std::filesystem::path file = from.parent_path() / std::filesystem::path(name);
     const bool is_there = !name.empty() && std::filesystem::is_regular_file(file, unknown);

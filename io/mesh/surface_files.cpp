@@ -134,7 +134,7 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& op
 
 cells::MeshBlocks read_node_ele(const InputFile& input, const MeshOptions& /*options*/) {
   const std::filesystem::path& file = input.path;
-  require_beside_others(file);
+  require_uncompressed(file);
   std::filesystem::path node_file = file, ele_file = file;
   // The partner's extension in the same case: A.NODE matches A.ELE.
   const bool upper = file.extension().string() != system::lower_extension(file);

@@ -58,7 +58,7 @@ std::filesystem::path header_path(std::string_view text, const std::filesystem::
   const bool is_name = std::none_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < 0x20; });
   std::error_code failed;
   std::filesystem::path path = file.parent_path() / text;
-  if (is_inflated(path)) require_beside_others(file);
+  if (is_inflated(path)) require_uncompressed(file);
   // An empty name would be the directory itself.
   if (!is_name || !std::filesystem::exists(path, failed) || std::filesystem::is_directory(path, failed))
     throw scene::bad_input(fmt::format("{}: {} is {}, and there is no such file; put the file it names there",

@@ -220,7 +220,7 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
 }
 
 /// The samples' file for a separate header: x.img for x.hdr, packed or not.
-std::filesystem::path image_beside(const std::filesystem::path& header) {
+std::filesystem::path image_of_header(const std::filesystem::path& header) {
   std::filesystem::path stem = header;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();
   const bool capitals = stem.extension() == ".HDR";
@@ -236,7 +236,7 @@ std::filesystem::path image_beside(const std::filesystem::path& header) {
 }
 
 /// x.hdr for x.img; any other name is the header itself.
-std::filesystem::path header_beside(const std::filesystem::path& file) {
+std::filesystem::path header_of_image(const std::filesystem::path& file) {
   std::filesystem::path stem = file;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();
   if (system::lower_extension(stem) != ".img") return file;
@@ -260,7 +260,7 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
   const double least =
       header.separate() ? 0 : static_cast<double>(header.version() == 1 ? header_size_1 : header_size_2) + 4;
   volume.offset = static_cast<std::uint64_t>(std::max(offset, least));
-  volume.payload = header.separate() ? image_beside(file) : file;
+  volume.payload = header.separate() ? image_of_header(file) : file;
   const bool is_input = volume.payload == input.path;
   if (is_input) volume.payload_size = input.size;
   volume.compressed = volume.compressed_whole =
@@ -290,7 +290,7 @@ StoredVolume read_nifti_header(const NiftiHeader& header, const std::filesystem:
 }
 
 StoredVolume read_analyze_header(const InputFile& input) {
-  const std::filesystem::path header_file = header_beside(input.path);
+  const std::filesystem::path header_file = header_of_image(input.path);
   NiftiHeader header(header_file == input.path ? first_bytes(input.beginning) : header_bytes(header_file));
   if (header.version() != 0) return read_nifti_header(header, header_file, input);
   if (!header.is_analyze())

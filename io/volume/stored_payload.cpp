@@ -108,13 +108,13 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
                     : samples_of_text(text, end / scene::size_of(volume.number), volume.number, source),
                 wanted.first);
   }
-  const auto lies_from = [&](std::uint64_t first_byte) {
+  const auto payload_from = [&](std::uint64_t first_byte) {
     return VolumePayload{{}, nullptr, {{file, first_byte}}, wanted.count};
   };
-  if (volume.at_end && wanted.all <= size) return lies_from(size - wanted.all + wanted.first);
+  if (volume.at_end && wanted.all <= size) return payload_from(size - wanted.all + wanted.first);
   if (volume.offset > size || end > size - volume.offset || (volume.exact_size && end != size - volume.offset))
     throw too_few(volume, wanted, size > volume.offset ? size - volume.offset : 0, source);
-  return lies_from(volume.offset + wanted.first);
+  return payload_from(volume.offset + wanted.first);
 }
 
 /// Concatenates files with equal shares of the payload.

@@ -33,7 +33,7 @@ struct VolumeFile {
   BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values look like those of CT
   VolumeTags tags{};
   scene::TimeStepRead time_step{};
-  bool beside_degrees = false;  ///< x and y are degrees, z is a length
+  bool xy_in_degrees = false;  ///< x and y are degrees, z is a length
 };
 
 /// Whether the file is a regular or rectilinear grid, or .raw. A helper inspects NetCDF, HDF5 and XDMF files, which

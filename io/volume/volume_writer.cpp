@@ -133,7 +133,7 @@ void write_nrrd(const scene::SampleSource& source, system::AtomicFile& out, cons
 }
 
 /// A property that the format cannot represent; null if it can represent everything.
-const char* unsaid(const scene::GridGeometry& g, std::string_view extension) {
+const char* unsupported_property(const scene::GridGeometry& g, std::string_view extension) {
   const bool xml = extension == ".vti" || extension == ".vtr";
   if (extension == ".bricks") return nullptr;
   if (!xml && g.association == scene::Association::cell) return "that it is cell data";
@@ -144,11 +144,11 @@ const char* unsaid(const scene::GridGeometry& g, std::string_view extension) {
 
 /// Throws if the format cannot represent the grid.
 void check_format(const scene::Grid& grid, const std::string& extension, const std::string& target) {
-  const char* const what = unsaid(grid.geometry, extension);
+  const char* const what = unsupported_property(grid.geometry, extension);
   if (what == nullptr) return;
   std::vector<const char*> others;
   for (const char* other : {".vti", ".vtr", ".nrrd"})
-    if (unsaid(grid.geometry, other) == nullptr) others.push_back(other);
+    if (unsupported_property(grid.geometry, other) == nullptr) others.push_back(other);
   throw scene::bad_input(fmt::format("{}: {} cannot state {}; write {}{}.bricks", target, extension, what,
                                      fmt::join(others, ", "), others.empty() ? "" : " or "));
 }

@@ -116,7 +116,7 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
 }
 
 /// In the forked process: sends each file's header as its length and CBOR, with length 0 if it is not an image.
-[[noreturn]] void tell_headers(int to, std::span<const std::filesystem::path> files) {
+[[noreturn]] void send_headers(int to, std::span<const std::filesystem::path> files) {
   for (const std::filesystem::path& file : files) {
     std::vector<std::uint8_t> bytes;
     if (const auto slice = read_dicom_header(file)) bytes = nlohmann::json::to_cbor(json_of(*slice));
@@ -135,7 +135,7 @@ std::size_t read_some(std::span<const std::filesystem::path> files, std::vector<
   const auto take = [&](void* bytes, std::size_t count) { return std::fread(bytes, 1, count, in.get()) == count; };
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category());
-  if (child == 0) tell_headers(out.get(), files);
+  if (child == 0) send_headers(out.get(), files);
   out = system::Descriptor();
   std::size_t done = 0;
   for (std::uint32_t length = 0; done < files.size() && take(&length, sizeof length); ++done) {

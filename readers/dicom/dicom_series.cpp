@@ -18,7 +18,7 @@ namespace {
 /// Rounding errors of decimal strings in a header, in millimetres and relative to a step.
 constexpr double same_place = 1e-3, even_enough = 1e-2;
 
-bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
+bool same_layout(const DicomSlice& a, const DicomSlice& b) {
   const auto are_near = [](double x, double y) { return std::abs(x - y) <= same_place * std::max(x, y); };
   return are_near(a.spacing.x, b.spacing.x) && are_near(a.spacing.y, b.spacing.y) && a.series == b.series &&
          a.columns == b.columns && a.rows == b.rows && a.frames == b.frames && a.components == b.components &&
@@ -29,12 +29,12 @@ bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
 std::vector<std::vector<DicomSlice>> groups_of(std::vector<DicomSlice> slices) {
   std::vector<std::vector<DicomSlice>> groups;
   for (DicomSlice& slice : slices) {
-    const auto alike = std::find_if(groups.begin(), groups.end(), [&](const std::vector<DicomSlice>& group) {
+    const auto match = std::find_if(groups.begin(), groups.end(), [&](const std::vector<DicomSlice>& group) {
       // Each multi-frame file is a volume of its own.
-      return slice.frames == 1 && lie_alike(group.front(), slice);
+      return slice.frames == 1 && same_layout(group.front(), slice);
     });
-    if (alike != groups.end())
-      alike->push_back(std::move(slice));
+    if (match != groups.end())
+      match->push_back(std::move(slice));
     else
       groups.emplace_back().push_back(std::move(slice));
   }
@@ -87,10 +87,10 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
     slice.spacing.x = f.spacing.x, slice.spacing.y = f.spacing.y;
     slice.slope = f.slope, slice.intercept = f.intercept, slice.time = f.time;
     slice.joined = {{.frame = slice.frame, .segment = f.segment}};
-    const auto alike =
-        std::find_if(stacks.begin(), stacks.end(), [&](const auto& group) { return lie_alike(group.front(), slice); });
-    if (alike != stacks.end())
-      alike->push_back(std::move(slice));
+    const auto match = std::find_if(stacks.begin(), stacks.end(),
+                                    [&](const auto& group) { return same_layout(group.front(), slice); });
+    if (match != stacks.end())
+      match->push_back(std::move(slice));
     else
       stacks.emplace_back().push_back(std::move(slice));
   }

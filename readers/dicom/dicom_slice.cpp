@@ -27,7 +27,7 @@
 namespace tessera::readers {
 namespace {
 
-constexpr const char* write_anew = "the file is truncated or damaged, write it again or leave it out";
+constexpr const char* write_again = "the file is truncated or damaged, write it again or leave it out";
 
 /// Sort key of slices at one position: the first of these values that the file has.
 DicomTime time_of(const gdcm::DataSet& data) {
@@ -199,7 +199,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
     : frame_size_(static_cast<std::size_t>(slice.columns * slice.rows)), padding_(slice.padding) {
   const std::string source = slice.file.string();
   const auto refuse = [&](const char* what) {
-    return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
+    return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_again));
   };
   // GDCM accepts truncated samples, and packed ones without their end marker.
   {
@@ -248,7 +248,7 @@ void DicomSamples::take_bits(const DicomSlice& slice) {
                                           ? reader.GetFile().GetDataSet().GetDataElement(samples).GetByteValue()
                                           : nullptr;
   if (bits == nullptr || bits->GetLength() < slice.bytes)
-    throw scene::bad_input(fmt::format("{}: it ends before its samples do; {}", source, write_anew));
+    throw scene::bad_input(fmt::format("{}: it ends before its samples do; {}", source, write_again));
   has_bits_ = true;
   bytes_.assign(bits->GetPointer(), bits->GetPointer() + slice.bytes);
 }

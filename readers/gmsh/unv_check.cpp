@@ -116,9 +116,9 @@ class Universal {
   }
 
   void require_new_datasets() const {
-    for (const auto& [old_ones, now, what] :
+    for (const auto& [old_datasets, now, what] :
          {std::tuple(std::array{15L, 781L}, 2411L, "nodes"), std::tuple(std::array{71L, 780L}, 2412L, "elements")})
-      for (const long old : old_ones)
+      for (const long old : old_datasets)
         if (known_.contains(old) && !known_.contains(now))
           throw scene::bad_input(
               fmt::format("{}: its {} are in dataset {}, of old versions, and Gmsh's library reads dataset {} alone; "

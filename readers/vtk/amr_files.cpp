@@ -53,39 +53,39 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
   io::ForeignContents contents;
   contents.has_levels = true;
   const Hdf5Failures failures;
-  const std::string warning =
-      with_quiet_vtk(source, write_anew,
-                     [&] {
-                       reader.SetMaxLevel(1 << 20);
-                       reader.SetFileName(source.c_str());
-                       reader.UpdateInformation();
-                       for (int k = 0; k < reader.GetNumberOfCellArrays(); ++k)
-                         reader.SetCellArrayStatus(reader.GetCellArrayName(k), 1);
-                       reader.Update();
-                       auto* const blocks = vtkOverlappingAMR::SafeDownCast(reader.GetOutputDataObject(0));
-                       if (blocks == nullptr) return;
-                       for (unsigned level = 0; level < blocks->GetNumberOfLevels(); ++level)
-                         for (unsigned b = 0; b < blocks->GetNumberOfDataSets(level); ++b) {
-                           vtkUniformGrid* const block = blocks->GetDataSet(level, b);
-                           const std::string name = fmt::format("level {} block {}", level, b);
-                           if (block == nullptr)
-                             throw scene::bad_input(fmt::format("{}: {} cannot be read; {}", source, name, write_anew));
-                           // The covered cells are computed again: VTK assumes that blocks nest.
-                           block->GetCellData()->RemoveArray("vtkGhostType");
-                           std::vector<io::ForeignPart> parts = parts_of(holdings, *block, source);
-                           for (io::ForeignPart& part : parts) {
-                             part.name = name;
-                             contents.parts.push_back(std::move(part));
-                           }
-                         }
-                     },
-                     {"Inconsistent spacing", "tracer particles", "data does not exist in file"});
+  const std::string warning = with_quiet_vtk(
+      source, write_again,
+      [&] {
+        reader.SetMaxLevel(1 << 20);
+        reader.SetFileName(source.c_str());
+        reader.UpdateInformation();
+        for (int k = 0; k < reader.GetNumberOfCellArrays(); ++k)
+          reader.SetCellArrayStatus(reader.GetCellArrayName(k), 1);
+        reader.Update();
+        auto* const blocks = vtkOverlappingAMR::SafeDownCast(reader.GetOutputDataObject(0));
+        if (blocks == nullptr) return;
+        for (unsigned level = 0; level < blocks->GetNumberOfLevels(); ++level)
+          for (unsigned b = 0; b < blocks->GetNumberOfDataSets(level); ++b) {
+            vtkUniformGrid* const block = blocks->GetDataSet(level, b);
+            const std::string name = fmt::format("level {} block {}", level, b);
+            if (block == nullptr)
+              throw scene::bad_input(fmt::format("{}: {} cannot be read; {}", source, name, write_again));
+            // The covered cells are computed again: VTK assumes that blocks nest.
+            block->GetCellData()->RemoveArray("vtkGhostType");
+            std::vector<io::ForeignPart> parts = parts_of(holdings, *block, source);
+            for (io::ForeignPart& part : parts) {
+              part.name = name;
+              contents.parts.push_back(std::move(part));
+            }
+          }
+      },
+      {"Inconsistent spacing", "tracer particles", "data does not exist in file"});
   if (failures.any())
-    throw scene::bad_input(fmt::format("{}: HDF5 cannot read all that belongs to it; {}", source, write_anew));
+    throw scene::bad_input(fmt::format("{}: HDF5 cannot read all that belongs to it; {}", source, write_again));
   // Their warnings mean a damaged file, except for spacings whose last bits differ from block to block, particles, and
   // fields that some blocks do not have.
-  if (!warning.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, warning, write_anew));
-  if (contents.parts.empty()) throw scene::bad_input(fmt::format("{}: it holds no blocks; {}", source, write_anew));
+  if (!warning.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, warning, write_again));
+  if (contents.parts.empty()) throw scene::bad_input(fmt::format("{}: it holds no blocks; {}", source, write_again));
   return contents;
 }
 
@@ -119,7 +119,7 @@ void require_grids(const std::filesystem::path& hierarchy) {
   std::ifstream file(hierarchy);
   std::size_t grids = 0, next = 0, number = 0;
   const auto refuse = [&](const std::string& what) {
-    return scene::bad_input(fmt::format("{}: line {}: {}; {}", hierarchy.string(), number, what, write_anew));
+    return scene::bad_input(fmt::format("{}: line {}: {}; {}", hierarchy.string(), number, what, write_again));
   };
   for (std::string line; std::getline(file, line);) {
     ++number;

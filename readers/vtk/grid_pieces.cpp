@@ -235,7 +235,7 @@ class Assembly {
       for (int n = 0; n < to.GetNumberOfArrays(); ++n) {
         vtkAbstractArray& array = *to.GetAbstractArray(n);
         vtkAbstractArray* const own = from.GetAbstractArray(array.GetName());
-        require_alike(own, array, fmt::format("array '{}'", array.GetName()), in_piece, piece);
+        require_equal(own, array, fmt::format("array '{}'", array.GetName()), in_piece, piece);
         TupleBox(piece.extent, points).copy(*own, in_piece, array, whole);
       }
     }
@@ -260,7 +260,7 @@ class Assembly {
 
  private:
   /// Throws unless the array has the same type and number of components as the first piece's, and all its tuples.
-  void require_alike(vtkAbstractArray* own, vtkAbstractArray& first, const std::string& name, const TupleBox& in_piece,
+  void require_equal(vtkAbstractArray* own, vtkAbstractArray& first, const std::string& name, const TupleBox& in_piece,
                      const Piece& piece) const {
     const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
     if (found != wanted)
@@ -283,7 +283,7 @@ class Assembly {
       structured.SetPoints(points);
     }
     vtkDataArray& points = *structured.GetPoints()->GetData();
-    require_alike(own, points, "list of points", in_piece, piece);
+    require_equal(own, points, "list of points", in_piece, piece);
     TupleBox(piece.extent, true).copy(*own, in_piece, points, whole);
   }
 

@@ -60,7 +60,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
 
  private:
   [[nodiscard]] scene::Error damaged(const std::string& what) const {
-    return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
+    return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_again));
   }
 
   static vtkXMLDataElement* array_named(vtkXMLDataElement& in, const char* name) {
@@ -281,14 +281,14 @@ io::ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::
   require_whole_xml(file);
   io::ForeignContents contents;
   contents.format = "VTK XML HyperTreeGrid";
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+  const std::string warning = with_quiet_vtk(source, write_again, [&] {
     const auto reader = vtkSmartPointer<TreeFileReader>::Take(TreeFileReader::New());
     reader->source = source;
     reader->file_size = io::require_file(file);
     reader->SetFileName(source.c_str());
     reader->Update();
     if (reader->fault) std::rethrow_exception(reader->fault);
-    if (!reader->was_read) throw scene::bad_input(fmt::format("{}: no trees can be read; {}", source, write_anew));
+    if (!reader->was_read) throw scene::bad_input(fmt::format("{}: no trees can be read; {}", source, write_again));
     ForestLeaves leaves = leaves_of(reader->forest, source);
     if (leaves.masked > 0) contents.notes.push_back(fmt::format("{} cells are masked and left out", leaves.masked));
     if (reader->has_interfaces)

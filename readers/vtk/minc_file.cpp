@@ -32,12 +32,12 @@ namespace {
 void require_whole(const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR)
-    throw scene::bad_input(fmt::format("{}: it begins as NetCDF and cannot be opened; {}", file.string(), write_anew));
+    throw scene::bad_input(fmt::format("{}: it begins as NetCDF and cannot be opened; {}", file.string(), write_again));
   const std::uint64_t least = least_netcdf_bytes(id), size = io::require_file(file);
   nc_close(id);
   if (size < least)
     throw scene::bad_input(
-        fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_anew));
+        fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_again));
 }
 
 /// Times of a file's steps: from the variable `time` if present, else from its start and step.
@@ -137,7 +137,7 @@ io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& f
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   vtkNew<MincReader> reader;
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+  const std::string warning = with_quiet_vtk(source, write_again, [&] {
     watch_progress(*reader);
     reader->SetFileName(source.c_str());
     reader->RescaleRealValuesOn();

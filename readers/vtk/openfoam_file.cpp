@@ -238,7 +238,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   io::ForeignContents contents;
   contents.format = "OpenFOAM case";
   if (!is_decomposed && request.value("part", 0) > 0) return contents;
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+  const std::string warning = with_quiet_vtk(source, write_again, [&] {
     reader->UpdateInformation();
     reader->EnableAllCellArrays();
     reader->EnableAllPointArrays();

@@ -57,15 +57,15 @@ namespace tessera::readers {
 namespace {
 
 /// Reads with a prepared reader; `choose` enables its file's arrays once they are known. If the reader supports shares
-/// of a file, reads the request's `part` of `parts`, which may be empty. `mend` corrects errors of the reader.
+/// of a file, reads the request's `part` of `parts`, which may be empty. `correct` corrects errors of the reader.
 template <class Reader, class Choose>
 io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
                             const nlohmann::json& request, const char* format, const Choose& choose,
-                            const std::function<void(vtkDataObject&)>& mend = nullptr) {
+                            const std::function<void(vtkDataObject&)>& correct = nullptr) {
   const std::string source = file.string();
   io::ForeignContents contents;
   contents.format = format;
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+  const std::string warning = with_quiet_vtk(source, write_again, [&] {
     reader.UpdateInformation();
     choose();
     update_at_step(reader, request, source, contents.time_step);
@@ -73,7 +73,7 @@ io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::files
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
   if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", source));
-  if (mend) mend(*data);
+  if (correct) correct(*data);
   contents.parts = parts_of(holdings, *data, source);
   if (contents.parts.empty() && request.value("parts", 1) == 1)
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
@@ -235,7 +235,7 @@ std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& fi
   if (!is_master) return {file};
   if (cases.empty())
     throw scene::bad_input(
-        fmt::format("{}: it is a list of EnSight's servers without a `casefile:`; {}", file.string(), write_anew));
+        fmt::format("{}: it is a list of EnSight's servers without a `casefile:`; {}", file.string(), write_again));
   return cases;
 }
 
@@ -404,7 +404,7 @@ io::ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path
 io::ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
   if (io::read_beginning(file, 8).starts_with("\x89HDF"))  // links to files of other directories are common in these
-    require_sound_references(file, ReferencesMay::lie_anywhere);
+    require_sound_references(file, ReferencesMay::point_anywhere);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());
@@ -440,7 +440,7 @@ io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path&
   } catch (const scene::Error&) {  // usually by running out of memory, because it does not check the end of a file
     throw scene::bad_input(fmt::format("{}: VTK's reader cannot read it; export CGNS or EnSight", file.string()));
   }
-  if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_anew);
+  if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_again);
   std::erase_if(contents.notes,
                 [](const std::string& note) { return note.find("open dat file") != std::string::npos; });
   if (!has_data) contents.notes.emplace_back("no .dat file is next to the case: it has no field");

@@ -62,13 +62,13 @@ class WithPieces final : public Reader {
       std::copy_n(this->PieceExtents + 6 * n, 6, pieces[n].begin());
       if (cells_in(pieces[n]) > 0 && !holds(whole, pieces[n]))
         throw scene::bad_input(fmt::format("{}: piece {} has the points {}, the whole has {}; {}", source, n,
-                                           words_of(pieces[n]), words_of(whole), write_anew));
+                                           words_of(pieces[n]), words_of(whole), write_again));
     }
     const double cells = cells_in(whole), covered = cells_covered(pieces);
     if (covered < cells)
       throw scene::bad_input(fmt::format("{}: its pieces have {:.0f} of its {:.0f} cells, of the points {} only {}; {}",
                                          source, covered, cells, words_of(whole), words_of(box_of(pieces)),
-                                         write_anew));
+                                         write_again));
   }
 };
 
@@ -167,7 +167,7 @@ vtkSmartPointer<vtkDataObject> read_legacy(const std::filesystem::path& file, st
   };
   vtkSmartPointer<vtkDataObject> data;
   try {
-    warning = with_quiet_vtk(source, write_anew, [&] {
+    warning = with_quiet_vtk(source, write_again, [&] {
       vtkNew<vtkDataSetReader> reader;
       read_all_arrays(*reader, source);
       data = reader->GetOutputDataObject(0);
@@ -204,7 +204,7 @@ void require_whole_xml(const std::filesystem::path& file) {
   std::string end(std::min<std::uint64_t>(opened.size(), 1024), '\0');
   opened.read(opened.size() - end.size(), reinterpret_cast<std::byte*>(end.data()), end.size());
   if (end.find("</VTKFile") == std::string::npos)
-    throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_anew));
+    throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_again));
   io::require_vtk_xml_form(opened, file.string());
 }
 
@@ -213,7 +213,7 @@ vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, 
   allow_for(file);
   require_whole_xml(file);
   vtkSmartPointer<vtkDataObject> data;
-  warning = with_quiet_vtk(file.string(), write_anew, [&] { data = read_xml(file.string(), type); });
+  warning = with_quiet_vtk(file.string(), write_again, [&] { data = read_xml(file.string(), type); });
   return data;
 }
 

@@ -69,8 +69,8 @@ std::string missing_file_in(std::string_view words, const std::string& source) {
 
 }  // namespace
 
-std::string words_for_users(std::string_view said) {
-  std::string text(said);
+std::string words_for_users(std::string_view reported) {
+  std::string text(reported);
   if (has(text, no_output)) return no_output;
   if (const std::size_t at = text.find("): "); at != std::string::npos) text.erase(0, at + 3);
   // "Algorithm vtkX returned failure for request: vtkInformation" and its state.

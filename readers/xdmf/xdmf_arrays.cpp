@@ -51,7 +51,7 @@ XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file
 void XdmfHeavyFiles::add(XdmfArray& array) {
   for (XdmfArray* const other : referenced_arrays(array, source_)) add(*other);
   for (unsigned k = 0; k < array.getNumberHeavyDataControllers(); ++k) {
-    io::require_beside_others(source_);
+    io::require_uncompressed(source_);
     const std::filesystem::path named = array.getHeavyDataController(k)->getFilePath();
     std::error_code unknown;
     const std::filesystem::path file = std::filesystem::canonical(named, unknown);

@@ -151,10 +151,10 @@ TEST(Scale, IsChosenForDegreesWithMetresAndNoted) {
 }
 
 TEST(Scale, IsNotChosenForBoxesThatAreNotThin) {
-  EXPECT_EQ(cells::scale_beside_degrees({glm::dvec3(0), glm::dvec3(10, 10, 100)}), glm::dvec3(1));
-  EXPECT_EQ(cells::scale_beside_degrees({glm::dvec3(0), glm::dvec3(10, 10, 0.6)}), glm::dvec3(1));
-  EXPECT_EQ(cells::scale_beside_degrees({glm::dvec3(0), glm::dvec3(2, 2, 5000)}), glm::dvec3(1, 1, 1e-4));
-  EXPECT_EQ(cells::scale_beside_degrees({glm::dvec3(0), glm::dvec3(360, 180, 5)}), glm::dvec3(1, 1, 10));
+  EXPECT_EQ(cells::scale_for_degrees({glm::dvec3(0), glm::dvec3(10, 10, 100)}), glm::dvec3(1));
+  EXPECT_EQ(cells::scale_for_degrees({glm::dvec3(0), glm::dvec3(10, 10, 0.6)}), glm::dvec3(1));
+  EXPECT_EQ(cells::scale_for_degrees({glm::dvec3(0), glm::dvec3(2, 2, 5000)}), glm::dvec3(1, 1, 1e-4));
+  EXPECT_EQ(cells::scale_for_degrees({glm::dvec3(0), glm::dvec3(360, 180, 5)}), glm::dvec3(1, 1, 10));
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST_F(SharedVolume, WithoutRoomForItEndsTheRunForAllWithARemedy) {
 
 TEST(BrickMemory, IsWhatTheRestOfTheProcessLeaves) {
   constexpr std::uint64_t mib = 1 << 20, brick = 33 * 33 * 33;
-  const BesideBricks rest{200 * mib, 30 * mib, {512, 512}, 1};
+  const OtherMemory rest{200 * mib, 30 * mib, {512, 512}, 1};
   const std::uint64_t left = brick_memory(1024 * mib, rest, brick);
   // The image twice (10 MiB), a thread, the heap; a hundredth for the overhead of each brick.
   EXPECT_LT(left, (1024 - 200 - 30 - 10) * mib);

@@ -365,7 +365,7 @@ cells::MeshBlocks mesh_of(const ForeignFile& file, GridsAre grids) {
   const ForeignContents& contents = file.contents;
   cells::MeshBlocks result{{}, contents.notes, contents.format, contents.block_names, contents.surface_names};
   result.time_step = contents.time_step;
-  result.beside_degrees = contents.beside_degrees;
+  result.xy_in_degrees = contents.xy_in_degrees;
   result.blocks = blocks_of(file, result.notes, grids);
   return result;
 }

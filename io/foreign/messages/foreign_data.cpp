@@ -134,7 +134,7 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
                         {"time_step", contents.time_step.step},
                         {"times", contents.time_step.times},
                         {"labels", contents.labels},
-                        {"beside_degrees", contents.beside_degrees},
+                        {"xy_in_degrees", contents.xy_in_degrees},
                         {"has_levels", contents.has_levels}});
 }
 
@@ -152,7 +152,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   json.at("time_step").get_to(contents.time_step.step);
   json.at("times").get_to(contents.time_step.times);
   json.at("labels").get_to(contents.labels);
-  json.at("beside_degrees").get_to(contents.beside_degrees);
+  json.at("xy_in_degrees").get_to(contents.xy_in_degrees);
   json.at("has_levels").get_to(contents.has_levels);
   return contents;
 }

@@ -79,9 +79,9 @@ struct ForeignContents {
   std::vector<std::string> block_names{};    ///< of all blocks, if blocks are not parts; empty: the names of the parts
   std::vector<std::string> surface_names{};  ///< of surfaces left out because the file has volume cells
   scene::TimeStepRead time_step{};
-  bool labels = false;          ///< the values are declared to be labels
-  bool beside_degrees = false;  ///< x and y are degrees, z is a length
-  bool has_levels = false;      ///< the parts are images: blocks of several refinement levels
+  bool labels = false;         ///< the values are declared to be labels
+  bool xy_in_degrees = false;  ///< x and y are degrees, z is a length
+  bool has_levels = false;     ///< the parts are images: blocks of several refinement levels
 };
 
 /// Serializes the contents (CBOR, RFC 8949). contents_of() is the inverse and throws std::exception for other bytes.

@@ -48,7 +48,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
     if (!opened.is_open())
       throw scene::bad_input(fmt::format(
           "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it again", file.string()));
-    require_sound_references(file, ReferencesMay::lie_below);
+    require_sound_references(file, ReferencesMay::point_below);
     if (opened.has("VTKHDF")) {
       vtk_type = opened.text_of("VTKHDF", "Type");
       kind = vtk_type == "ImageData" ? Kind::vtk_image : Kind::vtk;

@@ -136,7 +136,7 @@ class References {
     const std::string name = scene::quote(named.filename().string());
     if (!std::filesystem::is_regular_file(file, unknown))
       throw refuse(from, fmt::format("it leads to {}, which is not a regular file; put one there", name));
-    if (may_ == ReferencesMay::lie_below &&
+    if (may_ == ReferencesMay::point_below &&
         std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
       throw refuse(
           from,

@@ -6,7 +6,7 @@
 namespace tessera::readers {
 
 /// Where files referenced by an HDF5 file may be.
-enum class ReferencesMay { lie_below, lie_anywhere };
+enum class ReferencesMay { point_below, point_anywhere };
 
 /// Throws Error(bad_input) unless everything referenced by an HDF5 file (external links, external storage, sources of
 /// virtual datasets; and recursively) is in regular files, which are in its directory or below unless they may be

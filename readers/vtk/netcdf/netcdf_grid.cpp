@@ -334,8 +334,8 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
         .push_back(read_field(holdings, opened, field, its_step, contents.notes));
     report_progress(static_cast<double>(++done) / static_cast<double>(grid.fields.size()));
   }
-  contents.beside_degrees = is_in_degrees(opened, grid);
-  if (contents.beside_degrees)
+  contents.xy_in_degrees = is_in_degrees(opened, grid);
+  if (contents.xy_in_degrees)
     contents.notes.emplace_back("longitude and latitude, in degrees, are used as x and y, not as places on a sphere");
   contents.parts.push_back(std::move(placed.part));
   return contents;
