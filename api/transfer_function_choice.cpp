@@ -71,13 +71,13 @@ double smallest_positive(const Dataset::State& data) {
   if (low > 0) return low;
   double least = high;
   const scene::FieldSamples& found = data.field_samples();
-  const auto look_at = [&](double value) {
+  const auto consider = [&](double value) {
     if (value > 0) least = std::min(least, value);
   };
   // Interpolated values of a grid come arbitrarily close to 0 next to a sample <= 0, so use the stored samples.
-  std::ranges::for_each(found.stored, look_at);
+  std::ranges::for_each(found.stored, consider);
   if (found.stored.empty())
-    for (const scene::FieldSample& s : found.samples) look_at(s.value);
+    for (const scene::FieldSample& s : found.samples) consider(s.value);
   return least;
 }
 

@@ -97,14 +97,14 @@ int parse_component(const std::string& text) {
 }
 
 /// "NAME" or "NAME:component" among arrays of one association, or of both.
-std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Association> association,
+std::optional<FieldChoice> resolve(const std::string& requested, std::optional<Association> association,
                                    std::span<const FieldSummary> fields, const std::string& source) {
-  if (const FieldSummary* field = find(fields, wish, association)) return choice_of(*field, std::nullopt);
-  const std::size_t colon = wish.rfind(':');
+  if (const FieldSummary* field = find(fields, requested, association)) return choice_of(*field, std::nullopt);
+  const std::size_t colon = requested.rfind(':');
   if (colon == std::string::npos) return std::nullopt;
-  const FieldSummary* field = find(fields, wish.substr(0, colon), association);
+  const FieldSummary* field = find(fields, requested.substr(0, colon), association);
   if (!field) return std::nullopt;
-  const std::string word_after = wish.substr(colon + 1);
+  const std::string word_after = requested.substr(colon + 1);
   const int component = parse_component(word_after);
   if (component == -2 || component >= field->components)
     throw scene::bad_input(fmt::format(
@@ -322,21 +322,21 @@ bool is_label_name(const std::string& name) {
 namespace {
 
 /// "did you mean 'NAME'? ", or empty.
-std::string meant_field(const std::string& wish, std::span<const FieldSummary> fields) {
+std::string meant_field(const std::string& requested, std::span<const FieldSummary> fields) {
   std::vector<std::string> names;
   for (const FieldSummary& field : fields) names.push_back(field.name);
   for (const Association a : {Association::point, Association::cell})
     for (const FieldSummary& field : fields)
       if (field.association == a) names.push_back(fmt::format("{}:{}", word(a), field.name));
-  const auto near = nearest_name(wish, names);
+  const auto near = nearest_name(requested, names);
   return near ? fmt::format("did you mean '{}'? ", *near) : "";
 }
 
 }  // namespace
 
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
+FieldChoice choose_field(const std::string& requested, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape) {
-  if (wish.empty()) {
+  if (requested.empty()) {
     std::optional<FieldChoice> choice = default_choice(fields, shape);
     if (!choice) return no_array(fields, shape);
     if (fields.size() > 1)
@@ -345,18 +345,18 @@ FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> 
     return *choice;
   }
   std::optional<FieldChoice> choice;
-  if (find(fields, wish, std::nullopt)) choice = resolve(wish, std::nullopt, fields, source);
+  if (find(fields, requested, std::nullopt)) choice = resolve(requested, std::nullopt, fields, source);
   for (const Association a : {Association::point, Association::cell})
-    if (const std::string prefix = fmt::format("{}:", word(a)); !choice && wish.starts_with(prefix))
-      choice = resolve(wish.substr(prefix.size()), a, fields, source);
-  if (!choice) choice = resolve(wish, std::nullopt, fields, source);
+    if (const std::string prefix = fmt::format("{}:", word(a)); !choice && requested.starts_with(prefix))
+      choice = resolve(requested.substr(prefix.size()), a, fields, source);
+  if (!choice) choice = resolve(requested, std::nullopt, fields, source);
   if (!choice)
     throw scene::bad_input(
-        fields.empty()
-            ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, wish)
-            : fmt::format("{}: no field '{}'; {}it has {}", source, wish, meant_field(wish, fields), list(fields)));
+        fields.empty() ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, requested)
+                       : fmt::format("{}: no field '{}'; {}it has {}", source, requested,
+                                     meant_field(requested, fields), list(fields)));
   if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
-      !wish.starts_with("point:"))
+      !requested.starts_with("point:"))
     choice->notes.push_back(fmt::format(
         "'{0}' is both a point and a cell field: the point one is taken, cell:{0} asks for the other", choice->name));
   return *choice;
@@ -366,9 +366,9 @@ bool look_like_colors(const FieldSummary& field) {
   return field.type == "uint8" && (field.components == 3 || field.components == 4);
 }
 
-void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
+void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& requested,
                    const std::string& source) {
-  if (choice.component != magnitude || wish.ends_with(":mag") || wish.ends_with(":magnitude")) return;
+  if (choice.component != magnitude || requested.ends_with(":mag") || requested.ends_with(":magnitude")) return;
   throw scene::bad_input(
       fmt::format("{}: '{}' has colors of {} components, which are not drawn as colors; choose one with `field` {}:0 "
                   "(red), or their length with {}:mag",

@@ -52,19 +52,19 @@ bool is_label_name(const std::string& name);
 bool looks_like_noise(const FieldSummary& field);
 
 /// Resolves ReadOptions::field. Names take precedence over syntax: "a:b" is the array of that name if it exists; a name
-/// of both a point and a cell array selects the point array. If `wish` is empty: the file's active scalars if they
+/// of both a point and a cell array selects the point array. If `requested` is empty: the file's active scalars if they
 /// vary, otherwise the first varying array among point scalars, point vectors, cell scalars, cell vectors; fields that
 /// look like noise only if nothing else varies. Next, with a note, a short float array that would be ids by its values
 /// alone. If only labels vary: the first, or with `shape` (ReadOptions::shape) no array but the shape; the same if
 /// nothing varies. Throws Error(bad_input) listing all names.
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
+FieldChoice choose_field(const std::string& requested, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape = false);
 
 /// Whether samples are colors: three or four bytes, as in MetaImage, NIfTI and VTK's image data.
 bool look_like_colors(const FieldSummary& field);
 
-/// Throws Error(bad_input) if the magnitude of colors was chosen by default: `wish` is ReadOptions::field.
-void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
+/// Throws Error(bad_input) if the magnitude of colors was chosen by default: `requested` is ReadOptions::field.
+void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& requested,
                    const std::string& source);
 
 /// The chosen array of this block, with the summary's number of components; null if the block does not have it.

@@ -11,7 +11,7 @@
 namespace tessera::scene {
 namespace {
 
-constexpr std::uint64_t tets_looked_at = 1 << 16;
+constexpr std::uint64_t most_examined_tets = 1 << 16;
 constexpr double points_in_all = 1 << 14;
 constexpr int most_points_a_tet = 4096;
 constexpr std::int64_t points_along_axis = 40;
@@ -50,7 +50,7 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
   // points.
   const double volume = (whole.mean_thickness + std::numeric_limits<double>::denorm_min()) / out.longest * face +
                         static_cast<double>(whole.tets) * 0x1p-100;
-  const std::uint64_t stride = std::max<std::uint64_t>(1, (whole.tets + tets_looked_at - 1) / tets_looked_at);
+  const std::uint64_t stride = std::max<std::uint64_t>(1, (whole.tets + most_examined_tets - 1) / most_examined_tets);
   for (std::size_t t = 0; t < part.tets.size(); ++t) {
     const std::uint64_t number = global_tet.empty() ? t : global_tet[t];
     if (number % stride != 0) continue;

@@ -152,10 +152,10 @@ LabelValues label_values(const SampleSource& source, bool stated) {
   const std::int64_t slices = source.geometry().samples()[2];
   std::vector<double> values;
   if (!stated) {
-    constexpr std::int64_t looked_at = 16;
+    constexpr std::int64_t examined = 16;
     LabelTallies some;
-    for (std::int64_t n = 0; n < std::min(looked_at, slices); ++n) {
-      const std::int64_t k = slices <= looked_at ? n : (2 * n + 1) * slices / (2 * looked_at);
+    for (std::int64_t n = 0; n < std::min(examined, slices); ++n) {
+      const std::int64_t k = slices <= examined ? n : (2 * n + 1) * slices / (2 * examined);
       if (!add_slice(source, k, values, some)) return {};
     }
     if (!some.may_be_labels()) return {};

@@ -32,28 +32,28 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
   constexpr std::size_t longest = 256;  // of file and field names; the time is quadratic
   constexpr std::size_t most = 10'000;
   if (word.empty() || word.size() > longest) return std::nullopt;
-  const std::string wish = lower_case(word);
+  const std::string requested = lower_case(word);
   const std::string* nearest = nullptr;
   const std::string* begun = nullptr;
-  std::size_t fewest = std::max<std::size_t>(1, wish.size() / 3) + 1, begins = 0;
+  std::size_t fewest = std::max<std::size_t>(1, requested.size() / 3) + 1, begins = 0;
   for (const std::string& name : names.first(std::min(names.size(), most))) {
     if (name.empty() || name.size() > longest) continue;
     const std::string known = lower_case(name);
-    if (known.starts_with(wish)) {
+    if (known.starts_with(requested)) {
       begun = &name;
       ++begins;
     }
     for (const std::string& part : {known, known.substr(known.rfind('/') + 1)}) {
-      const std::size_t all = std::max(part.size(), wish.size());
-      if (all - std::min(part.size(), wish.size()) >= fewest) continue;
+      const std::size_t all = std::max(part.size(), requested.size());
+      if (all - std::min(part.size(), requested.size()) >= fewest) continue;
       // Any other letter is one edit from a one-letter word.
-      if (const std::size_t count = changes(wish, part); count < fewest && count < wish.size()) {
+      if (const std::size_t count = changes(requested, part); count < fewest && count < requested.size()) {
         fewest = count;
         nearest = &name;
       }
     }
   }
-  if (nearest == nullptr && begins == 1 && wish.size() > 1) nearest = begun;
+  if (nearest == nullptr && begins == 1 && requested.size() > 1) nearest = begun;
   return nearest == nullptr ? std::nullopt : std::optional(*nearest);
 }
 

@@ -24,10 +24,11 @@ struct TimeStepRead {
 };
 
 /// The requested one of `count` steps, the last by default. Throws Error(bad_input) if it does not exist.
-inline TimeStepRead chosen_step(std::optional<std::size_t> wish, std::uint64_t count, const std::string& source) {
-  if (wish && *wish >= std::max<std::uint64_t>(count, 1))
-    throw bad_input(fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
-  return {count, wish.value_or(count == 0 ? 0 : count - 1), {}};
+inline TimeStepRead chosen_step(std::optional<std::size_t> requested, std::uint64_t count, const std::string& source) {
+  if (requested && *requested >= std::max<std::uint64_t>(count, 1))
+    throw bad_input(
+        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *requested, count));
+  return {count, requested.value_or(count == 0 ? 0 : count - 1), {}};
 }
 
 /// Keeps times only if there is one for each step and all are finite.
@@ -47,12 +48,12 @@ inline std::vector<double> even_times(double first, double step, std::uint64_t c
 }
 
 /// The note about the time step; none if there is only one.
-inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> wish) {
+inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> requested) {
   if (read.count <= 1) return std::nullopt;
   const std::string time =
       read.step < read.times.size() ? fmt::format(", time {:.6g}", read.times[read.step]) : std::string();
   return fmt::format("time step {} of 0 to {}{}{}", read.step, read.count - 1, time,
-                     wish ? "" : ", the last by default; `time_step` all shows them as a film");
+                     requested ? "" : ", the last by default; `time_step` all shows them as a film");
 }
 
 }  // namespace tessera::scene

@@ -139,13 +139,13 @@ Renderer::Renderer(SceneReader& reader, Job& job, const RendererSettings& settin
       queue_(settings.latency_ms),
       long_queue_(settings.latency_ms),
       stage_(
-          reader, job, settings.memory_bytes, [this] { data_came(); },
+          reader, job, settings.memory_bytes, [this] { data_arrived(); },
           [this](const Reading& reading) { report_reading(reading); }) {}
 
 Renderer::~Renderer() = default;
 
-void Renderer::data_came() {
-  if (!first_came_.exchange(true)) queue_.send_to_all(R"({"type":"data"})");
+void Renderer::data_arrived() {
+  if (!first_arrived_.exchange(true)) queue_.send_to_all(R"({"type":"data"})");
   queue_.send_to_waiting(R"({"type":"data"})");
   queue_.wake();
 }
@@ -154,7 +154,7 @@ void Renderer::report_reading(const Reading& reading) {
   const auto now = Clock::now();
   if (ms_between(reading_reported_, now) < 200) return;
   reading_reported_ = now;
-  first_came_ ? queue_.send_to_waiting(reading_text(reading)) : queue_.send_to_all(reading_text(reading));
+  first_arrived_ ? queue_.send_to_waiting(reading_text(reading)) : queue_.send_to_all(reading_text(reading));
 }
 
 void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
@@ -171,7 +171,7 @@ ClientId Renderer::join(std::shared_ptr<Channel> channel) {
                               {"tessera", version()},
                               {"latency", settings_.latency_ms},
                               {"base", reader_.base()},
-                              {"ready", first_came_.load()}}));
+                              {"ready", first_arrived_.load()}}));
   if (const auto reading = stage_.reading()) channel->send_text(reading_text(*reading));
   return queue_.join(channel);
 }
@@ -194,7 +194,7 @@ void Renderer::read_first() {
     const Json base = reader_.base();
     stage_.data(base, reader_.scene(base));
   } catch (const Error&) {  // reported to the first client that asks for the data
-    first_came_ = true;
+    first_arrived_ = true;
   }
 }
 

@@ -48,7 +48,7 @@ class Renderer final : public Service {
   /// Reads the data that the server was started with.
   void read_first();
   void report_reading(const Reading& reading);
-  void data_came();
+  void data_arrived();
 
   SceneReader& reader_;
   RendererSettings settings_;
@@ -56,7 +56,7 @@ class Renderer final : public Service {
   Stage stage_;
   Precedence precedence_;
   LongProgress film_, picture_;
-  std::atomic<bool> first_came_ = false;
+  std::atomic<bool> first_arrived_ = false;
   std::uint64_t frames_ = 0;
   Clock::time_point reading_reported_;
 };

@@ -30,8 +30,8 @@ std::string meant_file(const std::filesystem::path& file) {
   for (; !error && names.size() < most && entry != std::filesystem::directory_iterator(); entry.increment(error))
     names.push_back(entry->path().filename().string());
   // The next piece or step of a series is not a likely alternative.
-  const std::string wish = without_digits(file.filename().string());
-  std::erase_if(names, [&](const std::string& name) { return without_digits(name) == wish; });
+  const std::string requested = without_digits(file.filename().string());
+  std::erase_if(names, [&](const std::string& name) { return without_digits(name) == requested; });
   std::ranges::sort(names);  // directory entries are unordered
   const auto near = nearest_name(file.filename().string(), names);
   if (!near) return {};

@@ -156,12 +156,12 @@ Opened open_file(const InputFile& input, const ReadOptions& options, StatusLine&
 /// The requested step as `render` shows it alone, or the first step as in a film of all steps.
 Opened open_series(const std::filesystem::path& input, ReadOptions options, StatusLine& line) {
   const std::vector<TimeStep> series = read_time_series(input);
-  const std::optional<std::size_t> wish = std::exchange(options.time_step, std::nullopt);
-  if (wish && *wish >= series.size())
-    throw bad_input(
-        fmt::format("{}: there is no time step {}, it has {}; count from 0", input.string(), *wish, series.size()));
+  const std::optional<std::size_t> requested = std::exchange(options.time_step, std::nullopt);
+  if (requested && *requested >= series.size())
+    throw bad_input(fmt::format("{}: there is no time step {}, it has {}; count from 0", input.string(), *requested,
+                                series.size()));
   Opened opened;
-  opened.steps = {series.size(), wish.value_or(0), {}, true, {}};
+  opened.steps = {series.size(), requested.value_or(0), {}, true, {}};
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
     opened.data.reset();  // one step's memory at a time
     line.begin("reading " + series[step].files.front().filename().string());
@@ -177,8 +177,8 @@ Opened open_series(const std::filesystem::path& input, ReadOptions options, Stat
   };
   RenderOptions pictures;
   pictures.read = options;
-  if (!wish && goes_by_steps(series.size(), pictures)) {
-    const SeriesChoice choice = choose_by_steps(steps_to_look_at(series.size()), pictures, options, open_step);
+  if (!requested && depends_on_steps(series.size(), pictures)) {
+    const SeriesChoice choice = choose_by_steps(steps_to_examine(series.size()), pictures, options, open_step);
     opened.function = *choice.function;
     opened.steps.range = choice.range;
     opened.note = series_note(choice, series.size(), opened.data->field_name());

@@ -187,7 +187,7 @@ class RenderSceneReader final : public server::SceneReader {
     if (!shows_all_) return;
     const auto parsed = parse(base_);
     const RenderOptions& options = parsed->options;
-    if (!goes_by_steps(times_.size(), options)) return;
+    if (!depends_on_steps(times_.size(), options)) return;
     const std::vector<TimeStep> series = read_time_series(input_);
     StatusLine line(shows_progress(false) && job.rank() == 0);
     try {
@@ -206,7 +206,7 @@ class RenderSceneReader final : public server::SceneReader {
           }
           return &*data;
         };
-        const SeriesChoice choice = choose_by_steps(steps_to_look_at(series.size()), options, options.read, open_step);
+        const SeriesChoice choice = choose_by_steps(steps_to_examine(series.size()), options, options.read, open_step);
         if (choice.field.empty()) return;
         start_ = {choice.field, {choice.field, field_word_of(*data)}, choice.range, nullptr, parsed->look};
         if (choice.function) start_->function = std::make_shared<LoadedTransferFunction>(*choice.function);

@@ -22,7 +22,7 @@ namespace {
 constexpr double most_beyond = 0.1;
 
 /// One examined step, with its own field or the one chosen for all.
-struct LookedAt {
+struct ExaminedStep {
   std::size_t step = 0;
   std::string field;  ///< empty: the shape
   std::array<double, 2> range{};
@@ -39,22 +39,22 @@ std::vector<std::size_t> all_below(std::size_t end) {
 
 double span_of(const std::array<double, 2>& range) { return range[1] - range[0]; }
 
-class SeriesLook {
+class SeriesExamination {
  public:
-  SeriesLook(const RenderOptions& options, const ReadOptions& read, const OpenStep& open)
+  SeriesExamination(const RenderOptions& options, const ReadOptions& read, const OpenStep& open)
       : options_(options), read_(read), open_(open), keeps_values_(function_has_values(options)) {}
 
   /// Examines the steps from the last to the first, which stays open.
-  void look_at(const std::vector<std::size_t>& steps) {
+  void examine(const std::vector<std::size_t>& steps) {
     std::for_each(steps.rbegin(), steps.rend(), [this](std::size_t step) {
-      if (std::ranges::find(looked_, step, &LookedAt::step) != looked_.end()) return;
-      if (const Dataset* data = opened(step, read_)) looked_.push_back(found_in(step, *data));
+      if (std::ranges::find(examined_, step, &ExaminedStep::step) != examined_.end()) return;
+      if (const Dataset* data = opened(step, read_)) examined_.push_back(found_in(step, *data));
     });
   }
 
   [[nodiscard]] bool varies() const {
     if (read_.field.empty()) return !chosen_field().empty();
-    return std::ranges::any_of(looked_, [](const LookedAt& l) { return span_of(l.range) > 0; });
+    return std::ranges::any_of(examined_, [](const ExaminedStep& l) { return span_of(l.range) > 0; });
   }
 
   SeriesChoice choose() {
@@ -64,13 +64,14 @@ class SeriesLook {
     ReadOptions chosen = read_;
     chosen.field = choice.field;
     if (read_.field.empty() && !choice.field.empty())
-      for (LookedAt& l : looked_)
+      for (ExaminedStep& l : examined_)
         if (l.field != choice.field)
           if (const Dataset* data = opened(l.step, chosen)) l = found_in(l.step, *data);
-    std::ranges::sort(looked_, {}, &LookedAt::step);
-    const LookedAt& widest = *std::ranges::max_element(looked_, {}, [](const LookedAt& l) { return span_of(l.range); });
+    std::ranges::sort(examined_, {}, &ExaminedStep::step);
+    const ExaminedStep& widest =
+        *std::ranges::max_element(examined_, {}, [](const ExaminedStep& l) { return span_of(l.range); });
     choice.range = widest.range;
-    for (const LookedAt& l : looked_) {
+    for (const ExaminedStep& l : examined_) {
       choice.steps.push_back(l.step);
       choice.range = {std::min(choice.range[0], l.range[0]), std::max(choice.range[1], l.range[1])};
     }
@@ -96,8 +97,8 @@ class SeriesLook {
     return (data.association() == Association::point ? "point:" : "cell:") + data.field_name();
   }
 
-  LookedAt found_in(std::size_t step, const Dataset& data) {
-    LookedAt found{step, word_of(data), data.range(), {data.fields().begin(), data.fields().end()}, {}, {}};
+  ExaminedStep found_in(std::size_t step, const Dataset& data) {
+    ExaminedStep found{step, word_of(data), data.range(), {data.fields().begin(), data.fields().end()}, {}, {}};
     // Computed now, since only one step is in memory at a time.
     try {
       if (!keeps_values_) found.function = transfer_function_of(data, options_);
@@ -109,25 +110,26 @@ class SeriesLook {
 
   [[nodiscard]] std::string chosen_field() const {
     std::vector<std::vector<FieldInfo>> fields;
-    std::transform(looked_.rbegin(), looked_.rend(), std::back_inserter(fields), std::mem_fn(&LookedAt::fields));
+    std::transform(examined_.rbegin(), examined_.rend(), std::back_inserter(fields),
+                   std::mem_fn(&ExaminedStep::fields));
     return field_of_steps(fields, read_);
   }
 
   /// If no field varies over the steps, throws if some lack the field that others show: its colours would be those of
   /// another field.
   void require_same_field() {
-    std::ranges::sort(looked_, {}, &LookedAt::step);
-    const auto with = std::ranges::find_if(looked_, [](const LookedAt& l) { return !l.field.empty(); });
-    if (with == looked_.end()) return;
-    const auto without = std::ranges::find_if(looked_, [&](const LookedAt& l) { return l.field != with->field; });
-    if (without == looked_.end()) return;
+    std::ranges::sort(examined_, {}, &ExaminedStep::step);
+    const auto with = std::ranges::find_if(examined_, [](const ExaminedStep& l) { return !l.field.empty(); });
+    if (with == examined_.end()) return;
+    const auto without = std::ranges::find_if(examined_, [&](const ExaminedStep& l) { return l.field != with->field; });
+    if (without == examined_.end()) return;
     throw bad_input(
         fmt::format("time step {} has no field '{}', which time step {} shows; choose steps that have it with "
                     "--time-step FIRST:LAST, or with --field a field of all steps",
                     without->step, with->field, with->step));
   }
 
-  std::optional<LoadedTransferFunction> function_over(const std::array<double, 2>& range, const LookedAt& widest,
+  std::optional<LoadedTransferFunction> function_over(const std::array<double, 2>& range, const ExaminedStep& widest,
                                                       const ReadOptions& read) {
     if (keeps_values_) return std::nullopt;
     if (widest.no_function) std::rethrow_exception(widest.no_function);
@@ -144,7 +146,7 @@ class SeriesLook {
   const ReadOptions& read_;
   const OpenStep& open_;
   const bool keeps_values_;
-  std::vector<LookedAt> looked_;  ///< the first step last, until a field is chosen
+  std::vector<ExaminedStep> examined_;  ///< the first step last, until a field is chosen
   std::pair<std::size_t, std::string> last_opened_;
 };
 
@@ -155,14 +157,14 @@ bool function_has_values(const RenderOptions& options) {
   return !options.function.rescale && (is_json_text(function) || std::filesystem::exists(function));
 }
 
-bool goes_by_steps(std::size_t steps, const RenderOptions& options) {
+bool depends_on_steps(std::size_t steps, const RenderOptions& options) {
   if (steps < 2) return false;
   const bool fixes_values =
       function_has_values(options) || (options.function.range && !options.transfer_function.empty());
   return options.read.field.empty() || !fixes_values;
 }
 
-std::vector<std::size_t> steps_to_look_at(std::size_t steps) {
+std::vector<std::size_t> steps_to_examine(std::size_t steps) {
   const std::size_t last = steps - 1;
   if (steps <= 5) return all_below(steps);
   const std::set<std::size_t> chosen = {0, last / 4, last / 2, last - last / 4, last};
@@ -171,10 +173,10 @@ std::vector<std::size_t> steps_to_look_at(std::size_t steps) {
 
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open) {
-  SeriesLook look(options, read, open);
-  look.look_at(steps.size() > 3 ? std::vector{steps.front(), steps[steps.size() / 2], steps.back()} : steps);
-  if (!look.varies()) look.look_at(steps);
-  return look.choose();
+  SeriesExamination examination(options, read, open);
+  examination.examine(steps.size() > 3 ? std::vector{steps.front(), steps[steps.size() / 2], steps.back()} : steps);
+  if (!examination.varies()) examination.examine(steps);
+  return examination.choose();
 }
 
 std::string series_note(const SeriesChoice& choice, std::size_t steps, const std::string& field) {

@@ -32,12 +32,12 @@ using OpenStep = std::function<const Dataset*(std::size_t step, const ReadOption
 bool function_has_values(const RenderOptions& options);
 
 /// Whether the options leave the field or the colours of several steps open.
-bool goes_by_steps(std::size_t steps, const RenderOptions& options);
+bool depends_on_steps(std::size_t steps, const RenderOptions& options);
 
 /// The steps to examine, ascending.
-std::vector<std::size_t> steps_to_look_at(std::size_t steps);
+std::vector<std::size_t> steps_to_examine(std::size_t steps);
 
-/// `steps` are the existing ones of steps_to_look_at(). They must include the first, which is opened last, with the
+/// `steps` are the existing ones of steps_to_examine(). They must include the first, which is opened last, with the
 /// chosen field. The result is the same on all ranks, where `open` is collective.
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open);

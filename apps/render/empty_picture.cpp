@@ -213,7 +213,7 @@ EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, con
   return has_nothing && has_volume && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;
 }
 
-void EmptyPictures::look_at(std::size_t frame, const RenderedFrame& rendered, const Dataset& data,
+void EmptyPictures::examine(std::size_t frame, const RenderedFrame& rendered, const Dataset& data,
                             const TransferFunction& function, const RenderOptions& options) {
   const EmptyReason reason = reason_of_empty(rendered, data, function, options);
   if (reason == EmptyReason::none) return;

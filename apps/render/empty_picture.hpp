@@ -56,7 +56,7 @@ struct FinishedRun {
 class EmptyPictures {
  public:
   /// Call for each image, on the rank that has the images.
-  void look_at(std::size_t frame, const RenderedFrame& rendered, const Dataset& data, const TransferFunction& function,
+  void examine(std::size_t frame, const RenderedFrame& rendered, const Dataset& data, const TransferFunction& function,
                const RenderOptions& options);
   /// Reports which images are empty, the reason, and options that show something, tried on the named views. Empty if
   /// all images show something, or the transfer function's own warning already reports it. Collective.

@@ -187,7 +187,7 @@ class Film final : public Sink {
       record.verification = step_.session().verify(*rendered, {record.camera, frame.size}, step_.function(),
                                                    static_cast<std::size_t>(options_.verify));
     }
-    empty_.look_at(static_cast<std::size_t>(&frame - frames_.data()), *rendered, step_.data(), step_.function(),
+    empty_.examine(static_cast<std::size_t>(&frame - frames_.data()), *rendered, step_.data(), step_.function(),
                    options_);
     output_.add(frame, record);
   }

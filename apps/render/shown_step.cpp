@@ -38,7 +38,7 @@ void ShownStep::show(const FilmFrame& frame) {
 }
 
 void ShownStep::open_first() {
-  if (goes_by_steps(steps(), options_))
+  if (depends_on_steps(steps(), options_))
     choose_for_all_steps();
   else
     open(frames_.front(), read_);
@@ -96,7 +96,7 @@ void ShownStep::choose_for_all_steps() {
     return *std::ranges::find(frames_, step, &FilmFrame::step);
   };
   // All ranks use the writing rank's view of the disk.
-  std::vector<std::size_t> steps = steps_to_look_at(this->steps());
+  std::vector<std::size_t> steps = steps_to_examine(this->steps());
   std::vector<std::byte> there;
   there.reserve(steps.size());
   for (const std::size_t step : steps) there.push_back(std::byte{frame_of(step).is_there()});

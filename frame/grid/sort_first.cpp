@@ -104,7 +104,7 @@ class SortFirst::State {
     bool stopped = false;
     try {
       made = renderer.render(job.camera, job.size, function,
-                             {.regions = mine, .error_bounds = frame_.keep_uncertainty, .tile_times = goes_by_times()},
+                             {.regions = mine, .error_bounds = frame_.keep_uncertainty, .tile_times = uses_times()},
                              &watch);
     } catch (const scene::FrameStopped&) {
       stopped = true;
@@ -113,7 +113,7 @@ class SortFirst::State {
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
-    if (settings_.balance_measured && !goes_by_times()) learn_speed(cpu, stopped);
+    if (settings_.balance_measured && !uses_times()) learn_speed(cpu, stopped);
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
@@ -125,7 +125,7 @@ class SortFirst::State {
     part.finished.statistics = std::move(made.statistics);
     part.finished.split = split;
     part.finished.cost = std::move(cost_);
-    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, process_token(), cpu, std::move(made.tile_times)};
+    if (uses_times()) timed_ = job, times_here_ = {!stopped, process_token(), cpu, std::move(made.tile_times)};
     return part;
   }
 
@@ -134,7 +134,7 @@ class SortFirst::State {
 
   /// Whether tiles are timed and splits computed from the times. Not with weights, which distribute work rather than
   /// time, nor with a cost map to show, which must be the same in each run.
-  [[nodiscard]] bool goes_by_times() const {
+  [[nodiscard]] bool uses_times() const {
     return settings_.balance == Balance::learned && transport_.size() > 1 && !weights_are_given() && !frame_.keep_cost;
   }
 
@@ -142,7 +142,7 @@ class SortFirst::State {
   /// for another split. Collective.
   std::optional<ImageSplit> known_split(const volume::Renderer& renderer, const scene::TransferFunction& function,
                                         const VolumeJob& job) {
-    if (!goes_by_times()) return std::nullopt;
+    if (!uses_times()) return std::nullopt;
     const scene::Box box = scene::bounds(renderer.geometry());
     const bool alike = std::ranges::equal(function.knots(), timed_knots_);
     timed_knots_.assign(function.knots().begin(), function.knots().end());

@@ -119,12 +119,12 @@ class Faces {
 };
 
 /// The requested field, if the blocks have it.
-std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blocks, const std::string& wish,
+std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blocks, const std::string& requested,
                                            const std::string& source) {
-  if (wish.empty()) return std::nullopt;
+  if (requested.empty()) return std::nullopt;
   const std::vector<cells::FieldTally> tallies = cells::tally_fields(blocks);
   try {
-    return cells::choose_field(wish, cells::summarize_fields(std::span(&tallies, 1)), source);
+    return cells::choose_field(requested, cells::summarize_fields(std::span(&tallies, 1)), source);
   } catch (const scene::Error&) {
     return std::nullopt;
   }

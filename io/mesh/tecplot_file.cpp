@@ -65,9 +65,10 @@ std::vector<double> times_of(const TecplotHeader& header) {
   return {times.begin(), times.end()};
 }
 
-scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::size_t> wish, const std::string& source) {
+scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::size_t> requested,
+                             const std::string& source) {
   std::vector<double> times = times_of(header);
-  scene::TimeStepRead read = scene::chosen_step(wish, times.size(), source);
+  scene::TimeStepRead read = scene::chosen_step(requested, times.size(), source);
   scene::set_times(read, std::move(times));
   return read;
 }

@@ -128,11 +128,11 @@ std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
   return places;
 }
 
-std::size_t chosen_step(std::optional<std::size_t> wish, std::size_t count, const std::string& source) {
-  if (wish && *wish >= count)
+std::size_t chosen_step(std::optional<std::size_t> requested, std::size_t count, const std::string& source) {
+  if (requested && *requested >= count)
     throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the series has {}; count from 0", source, *wish, count));
-  return wish.value_or(count - 1);
+        fmt::format("{}: there is no time step {}, the series has {}; count from 0", source, *requested, count));
+  return requested.value_or(count - 1);
 }
 
 /// Times in seconds from the first of `count` slices at one position; empty if the files do not state them.
@@ -148,14 +148,14 @@ std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t coun
 }
 
 /// If slices at one position have several times: the slices of one time.
-std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> wish,
+std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> requested,
                                        const std::string& source, DicomVolume& volume) {
   std::vector<std::vector<DicomSlice>> places = by_place(std::move(slices));
   std::size_t least = places.front().size(), most = least;
   for (const auto& at : places) {
     least = std::min(least, at.size()), most = std::max(most, at.size());
   }
-  const std::size_t step = chosen_step(wish, least, source);
+  const std::size_t step = chosen_step(requested, least, source);
   volume.time_step = {least, step};
   scene::set_times(volume.time_step, times_of(places.front(), least));
   if (most > least)
@@ -218,7 +218,7 @@ std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const 
 }
 
 /// One slice per position: for labels from all frames, for fractions from those of the chosen segment.
-std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::optional<std::size_t> wish,
+std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::optional<std::size_t> requested,
                                            const std::string& source, DicomVolume& volume) {
   const DicomSegments segments = frames.front().segments;
   const bool are_fractions = segments.type == "FRACTIONAL";
@@ -227,7 +227,7 @@ std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::
   for (const DicomSlice& frame : frames) numbers.push_back(frame.joined.front().segment);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  const std::size_t step = chosen_step(wish, are_fractions ? numbers.size() : 1, source);
+  const std::size_t step = chosen_step(requested, are_fractions ? numbers.size() : 1, source);
   if (are_fractions) volume.time_step = {numbers.size(), step};
   if (numbers.back() > 0)
     volume.notes.push_back(are_fractions ? fmt::format("values are the fractions of segment {}; time steps are its "

@@ -106,14 +106,14 @@ void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
 
 /// Where a surface intersects itself, in words that follow "the surface cuts itself"; empty if TetGen does not find it.
 std::string place_of_cut(const cells::Surface& surface, const Frame& frame) {
-  tetgenbehavior wishes;
+  tetgenbehavior settings;
   std::string switches = "dzQ";  // d: find intersecting faces
-  wishes.parse_commandline(switches.data());
+  settings.parse_commandline(switches.data());
   tetgenio* const in = keep_for_good();
   tetgenio* const out = keep_for_good();
   copy_in(surface, frame, *in);
   try {
-    tetrahedralize(&wishes, in, out);
+    tetrahedralize(&settings, in, out);
   } catch (int) {
     return {};
   }
@@ -136,20 +136,20 @@ FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volu
     throw scene::bad_input(
         fmt::format("{}: {} points are too many for TetGen; coarsen the surface", source, surface.points.size()));
   const Frame frame(surface);
-  tetgenbehavior wishes;
+  tetgenbehavior settings;
   // p: fill a closed complex, q: quality, z: count from 0, Q: quiet
   std::string switches = max_volume ? "pq2.0zQ" : "pzQ";
-  wishes.parse_commandline(switches.data());
+  settings.parse_commandline(switches.data());
   if (max_volume) {
-    wishes.fixedvolume = 1;  // -a
-    wishes.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
+    settings.fixedvolume = 1;  // -a
+    settings.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
   }
   // Never freed: after a failure TetGen's destructors may crash, and the process ends soon.
   tetgenio* const in = keep_for_good();
   tetgenio* const out = keep_for_good();
   copy_in(surface, frame, *in);
   try {
-    tetrahedralize(&wishes, in, out);
+    tetrahedralize(&settings, in, out);
   } catch (int thrown) {
     if (thrown == 1) throw std::bad_alloc();
     throw scene::bad_input(fmt::format("{}: TetGen cannot fill the surface: {}{}; correct the surface", source,

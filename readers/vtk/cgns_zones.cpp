@@ -218,10 +218,10 @@ std::optional<io::ForeignContents> read_cgns_zones(Holdings& holdings, const std
   const CgnsFile opened(file);
   if (!opened.is_open()) return std::nullopt;
   const std::vector<CgnsZone> zones = zones_of(opened, source);
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
   CgnsSteps steps = steps_of(zones);
-  const std::uint64_t step = wish ? *wish : std::max<std::uint64_t>(steps.count, 1) - 1;
+  const std::uint64_t step = requested ? *requested : std::max<std::uint64_t>(steps.count, 1) - 1;
   const CgnsNamesakes namesakes = namesakes_of(zones, step);
   const auto needs_this = [&](const CgnsZone& zone) {
     return is_mesh(zone) && ((!zone.is_structured() && !is_plain(zone)) || has_cylinder_axes(zone) ||
@@ -230,7 +230,7 @@ std::optional<io::ForeignContents> read_cgns_zones(Holdings& holdings, const std
   if (namesakes.empty() && std::ranges::none_of(zones, needs_this)) return std::nullopt;
   io::ForeignContents contents;
   contents.format = "CGNS";
-  contents.time_step = scene::chosen_step(wish, steps.count, source);
+  contents.time_step = scene::chosen_step(requested, steps.count, source);
   scene::set_times(contents.time_step, std::move(steps.times));
   const int part = request.value("part", 0), parts = request.value("parts", 1);
   const std::uint64_t first = cells::first_of_part(zones.size(), part, parts);

@@ -260,15 +260,15 @@ class Reading {
       file_->fail(fmt::format("it promises {} {}", n, what));
   }
 
-  void choose_step(std::optional<std::size_t> wish) {
+  void choose_step(std::optional<std::size_t> requested) {
     const std::int64_t steps = std::max<std::int64_t>(ex_inquire_int(file_->id(), EX_INQ_TIME), 0);
     check_count("time steps", steps, 1);
-    result_.time_step = scene::chosen_step(wish, static_cast<std::uint64_t>(steps), source_);
+    result_.time_step = scene::chosen_step(requested, static_cast<std::uint64_t>(steps), source_);
     if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
     std::vector<double> times(static_cast<std::size_t>(steps));
     if (steps > 0 && ex_get_all_times(file_->id(), times.data()) >= 0)
       scene::set_times(result_.time_step, std::move(times));
-    step_ = wish ? static_cast<int>(*wish) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
+    step_ = requested ? static_cast<int>(*requested) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
   }
 
   void read_elements() {

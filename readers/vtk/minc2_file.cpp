@@ -153,10 +153,10 @@ io::ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& 
   const std::vector<Axis> axes = volume.ordered_axes();
   io::ForeignContents contents;
   contents.format = "MINC 2";
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
   const bool has_time = axes.front().name == "time", has_components = axes.back().name == "vector_dimension";
-  contents.time_step = scene::chosen_step(wish, has_time ? axes.front().size : 1, source);
+  contents.time_step = scene::chosen_step(requested, has_time ? axes.front().size : 1, source);
   if (has_time)
     scene::set_times(contents.time_step, scene::even_times(axes.front().start, axes.front().step, axes.front().size));
   const std::size_t step = contents.time_step.step;

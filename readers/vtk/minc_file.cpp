@@ -134,8 +134,8 @@ io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& f
   const std::string source = file.string();
   io::ForeignContents contents;
   contents.format = "MINC 1";
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
   vtkNew<MincReader> reader;
   const std::string warning = with_quiet_vtk(source, write_again, [&] {
     watch_progress(*reader);
@@ -143,7 +143,7 @@ io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& f
     reader->RescaleRealValuesOn();
     reader->UpdateInformation();
     const auto steps = static_cast<std::size_t>(std::max(reader->GetNumberOfTimeSteps(), 1));
-    contents.time_step = scene::chosen_step(wish, steps, source);
+    contents.time_step = scene::chosen_step(requested, steps, source);
     scene::set_times(contents.time_step, minc_times(file, steps));
     reader->SetTimeStep(static_cast<int>(contents.time_step.step));
     reader->Update();

@@ -303,11 +303,11 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
 /// The requested step of a case with file sets.
 scene::TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request,
                                       const std::string& source) {
-  std::optional<std::size_t> wish;
-  if (request.contains("time_step")) wish = request["time_step"].get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (request.contains("time_step")) requested = request["time_step"].get<std::size_t>();
   request.erase("time_step");
   std::vector<double> times = described.times();
-  scene::TimeStepRead read = scene::chosen_step(wish, times.size(), source);
+  scene::TimeStepRead read = scene::chosen_step(requested, times.size(), source);
   scene::set_times(read, std::move(times));
   return read;
 }

@@ -15,26 +15,26 @@
 namespace tessera::readers {
 
 double asked_time(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source) {
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
   auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
   vtkInformation* const about = reader.GetOutputInformation(0);
   const int steps = about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0;
-  const std::size_t step = scene::chosen_step(wish, static_cast<std::size_t>(steps), source).step;
+  const std::size_t step = scene::chosen_step(requested, static_cast<std::size_t>(steps), source).step;
   return steps == 0 ? 0 : about->Get(key, static_cast<int>(step));
 }
 
 void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source,
                     scene::TimeStepRead& read) {
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
   watch_progress(reader);
   reader.UpdateInformation();
   auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
   vtkInformation* const about = reader.GetOutputInformation(0);
   const auto steps =
       static_cast<std::size_t>(about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0);
-  read = scene::chosen_step(wish, steps, source);
+  read = scene::chosen_step(requested, steps, source);
   std::vector<double> times;
   for (std::size_t k = 0; k < steps; ++k) times.push_back(about->Get(key, static_cast<int>(k)));
   scene::set_times(read, times);

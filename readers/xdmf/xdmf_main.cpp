@@ -71,7 +71,7 @@ io::ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const s
 /// Values shared by all blocks.
 struct Reading {
   Holdings& holdings;
-  bool only_look;
+  bool headers_only;
   const std::string& source;
   std::set<const XdmfArray*> shared;  ///< used by more than one block
   std::vector<std::string>& notes;
@@ -83,7 +83,7 @@ class PartOf {
   PartOf(Reading& reading, const XdmfBlock& block, const std::string& name)
       : reading_(reading),
         holdings_(reading.holdings),
-        only_look_(reading.only_look),
+        headers_only_(reading.headers_only),
         where_(name.empty() ? reading.source : fmt::format("{}: block '{}'", reading.source, name)) {
     part.name = name;
     XdmfGrid* const grid = block.grids.front().get();
@@ -93,16 +93,16 @@ class PartOf {
       set(*rectilinear);
     } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(grid)) {
       part.kind = io::ForeignPart::Kind::structured;
-      if (only_look_) return;
+      if (headers_only_) return;
       set_extent(*curvilinear->getDimensions(), part, where_);
       part.points = hold_points(holdings_, *curvilinear->getGeometry(), where_, is_shared(*curvilinear->getGeometry()));
     } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(grid)) {
-      if (!only_look_) set(*unstructured);
+      if (!headers_only_) set(*unstructured);
     } else {
       throw scene::bad_input(fmt::format("{}: it is a grid of a kind that is not known; write it again", where_));
     }
     for (const auto& each : block.grids)
-      if (!only_look_) add_attributes(*each);
+      if (!headers_only_) add_attributes(*each);
   }
 
   io::ForeignPart part;
@@ -112,7 +112,7 @@ class PartOf {
 
   void set(XdmfRegularGrid& grid) {
     part.kind = io::ForeignPart::Kind::image;
-    if (only_look_) return;
+    if (headers_only_) return;
     set_extent(*grid.getDimensions(), part, where_);
     const std::vector<double> origin = doubles_of(*grid.getOrigin()), steps = doubles_of(*grid.getBrickSize());
     if (origin.size() != 3 || steps.size() != 3)
@@ -124,7 +124,7 @@ class PartOf {
 
   void set(XdmfRectilinearGrid& grid) {
     part.kind = io::ForeignPart::Kind::rectilinear;
-    if (only_look_) return;
+    if (headers_only_) return;
     const auto axes = grid.getCoordinates();
     if (axes.size() != 3)
       throw scene::bad_input(
@@ -190,7 +190,7 @@ class PartOf {
 
   Reading& reading_;
   Holdings& holdings_;
-  bool only_look_;
+  bool headers_only_;
   std::string where_;
   std::set<const XdmfAttribute*> taken_;
 };
@@ -225,7 +225,7 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
                               : reader->read(source));
   if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it again", source));
   std::optional<std::size_t> time_step;
-  const bool only_look = request.value("look", false);
+  const bool headers_only = request.value("look", false);
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   io::ForeignContents contents;
   contents.format = "XDMF";
@@ -239,7 +239,7 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
   for (const XdmfBlock& block : blocks)
     for (const auto& grid : block.grids) add_arrays(*grid, files);
   files.allow();
-  Reading reading{holdings, only_look, source, shared_arrays(blocks), contents.notes};
+  Reading reading{holdings, headers_only, source, shared_arrays(blocks), contents.notes};
   for (const XdmfBlock& block : blocks) {
     contents.parts.push_back(std::move(PartOf(reading, block, *chosen_name(block, choice)).part));
     report_progress(static_cast<double>(contents.parts.size()) / static_cast<double>(blocks.size()));

@@ -57,7 +57,7 @@ class GridSuspects {
   [[nodiscard]] std::int64_t blocks() const { return std::min(all_blocks(), most_blocks); }
 
   /// Examines the n-th selected block.
-  void look_at(std::int64_t n) {
+  void examine(std::int64_t n) {
     const std::int64_t all = all_blocks();
     const double spread = all > most_blocks ? hashed(static_cast<std::uint64_t>(n), 20) : 0;
     const auto block = static_cast<std::int64_t>((static_cast<double>(n) + spread) * static_cast<double>(all) /
@@ -81,7 +81,7 @@ class GridSuspects {
     for (std::int64_t k = box.low[2]; k < std::min(voxels_[2], place[2] * side + side); ++k)
       for (std::int64_t j = box.low[1]; j < std::min(voxels_[1], place[1] * side + side); ++j)
         for (std::int64_t i = box.low[0]; i < std::min(voxels_[0], place[0] * side + side); ++i)
-          look_at_voxel({i, j, k}, box, values, cell_data);
+          examine_voxel({i, j, k}, box, values, cell_data);
   }
 
   void find_ties() {
@@ -154,7 +154,7 @@ class GridSuspects {
     raise(found_.tie[pixel], nearness(std::max(away, along)) * (edge_[pixel] + 1e-6f));
   }
 
-  void look_at_voxel(const scene::GridIndex& voxel, const scene::SampleBox& box, std::span<const double> values,
+  void examine_voxel(const scene::GridIndex& voxel, const scene::SampleBox& box, std::span<const double> values,
                      bool cell_data) {
     std::array<double, 8> corner{};
     std::size_t finite = 0;
@@ -223,7 +223,7 @@ GridSuspicion suspect(const scene::SampleSource& source, const scene::Camera& ca
   GridSuspects suspects(source, camera, transfer_function, emission, image, edge);
   tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
-    tbb::parallel_for(std::int64_t{0}, suspects.blocks(), [&](std::int64_t block) { suspects.look_at(block); });
+    tbb::parallel_for(std::int64_t{0}, suspects.blocks(), [&](std::int64_t block) { suspects.examine(block); });
     suspects.find_ties();
   });
   return suspects.take();

@@ -46,15 +46,15 @@ class MeshSuspects {
     if (near < far) depth_quantum_ = quantum * (view_.perspective() ? 1 / near - 1 / far : far - near);
   }
 
-  [[nodiscard]] std::size_t looked_at() const { return std::min(mesh_.tets.size(), most_tets); }
+  [[nodiscard]] std::size_t examined() const { return std::min(mesh_.tets.size(), most_tets); }
 
   /// Examines the n-th selected tet.
-  void look_at_nth(std::size_t n) {
+  void examine_nth(std::size_t n) {
     const std::size_t all = mesh_.tets.size();
-    const bool edges = hashed(n, 21) * static_cast<double>(looked_at()) < static_cast<double>(most_tets_with_edges);
-    if (all <= most_tets) return look_at(n, edges);
+    const bool edges = hashed(n, 21) * static_cast<double>(examined()) < static_cast<double>(most_tets_with_edges);
+    if (all <= most_tets) return examine(n, edges);
     const double place = static_cast<double>(n) + hashed(n, 20);
-    look_at(
+    examine(
         std::min(all - 1, static_cast<std::size_t>(place * static_cast<double>(all) / static_cast<double>(most_tets))),
         edges);
   }
@@ -62,7 +62,7 @@ class MeshSuspects {
   MeshSuspicion take() { return std::move(found_); }
 
  private:
-  void look_at(std::size_t tet, bool edges) {
+  void examine(std::size_t tet, bool edges) {
     std::array<ProjectedVertex, 4> v;
     std::array<double, 4> scalars{};
     const bool cell_data = mesh_.association == scene::Association::cell;
@@ -140,9 +140,8 @@ MeshSuspicion suspect(const scene::TetMeshView& mesh, const scene::Camera& camer
                       const scene::Image& image, const SuspicionMap& edge, int threads) {
   MeshSuspects suspects(mesh, camera, transfer_function, emission, image, edge);
   tbb::task_arena arena(scene::threads_for(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, suspects.looked_at(), [&](std::size_t n) { suspects.look_at_nth(n); });
-  });
+  arena.execute(
+      [&] { tbb::parallel_for(std::size_t{0}, suspects.examined(), [&](std::size_t n) { suspects.examine_nth(n); }); });
   return suspects.take();
 }
 

@@ -36,12 +36,12 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
 }
 
 TEST(MeshCheck, ReportsProgress) {
-  std::vector<double> heard;
-  api::check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
-  ASSERT_GE(heard.size(), 6u);  // six parts, reported at each start and every 2^15 of 69,120 tets
-  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
-  EXPECT_GT(heard.front(), 0);
-  EXPECT_LT(heard.back(), 1);
+  std::vector<double> reported;
+  api::check_mesh(datasets::cube(24), [&reported](double done) { reported.push_back(done); });
+  ASSERT_GE(reported.size(), 6u);  // six parts, reported at each start and every 2^15 of 69,120 tets
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GT(reported.front(), 0);
+  EXPECT_LT(reported.back(), 1);
 }
 
 TEST(MeshCheck, CountsTwinsAlongASeam) {

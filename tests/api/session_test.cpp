@@ -323,11 +323,11 @@ TEST_P(AnyKind, RanksStoppedAtRandomTimesGoOn) {
     std::mt19937 random(11);
     const std::vector<View> views(3, view_of(data));
     for (int i = 0; i < 30; ++i) {
-      const int who = static_cast<int>(random() % ranks);
+      const int stopping_rank = static_cast<int>(random() % ranks);
       const auto delay = std::chrono::microseconds(random() % 30000);
       std::stop_source source;
-      std::jthread stopper([&, who] {
-        if (transport.rank() != who) return;
+      std::jthread stopper([&, stopping_rank] {
+        if (transport.rank() != stopping_rank) return;
         std::this_thread::sleep_for(delay);
         source.request_stop();
       });

@@ -139,7 +139,7 @@ TEST(Annotations, ReportsErrorsInOneLineBeforeWriting) {
   const std::string picture = folder / "a.png";
   struct Case {
     Words words;
-    const char* said;
+    const char* message;
   };
   for (const Case& c : {
            Case{{"--annotate", "{tiem}"}, "--annotate: {tiem} is unknown; use {field} {time} {file}"},
@@ -159,9 +159,9 @@ TEST(Annotations, ReportsErrorsInOneLineBeforeWriting) {
            Case{{"--outline", "--annotation-layer", picture}, "a.png"},
        }) {
     const auto run = tessera(joined({"render", folder.cube(), "--size", "20x20", "-o", picture}, c.words));
-    EXPECT_EQ(run.status, 2) << c.said;
+    EXPECT_EQ(run.status, 2) << c.message;
     EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_NE(run.err.find(c.said), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(c.message), std::string::npos) << run.err;
     EXPECT_EQ(folder.names(), Words{"cube.vtu"});
   }
   const auto deep = tessera({"render", folder.cube(), "--size", "20x20", "-o", folder / "a.deep.exr", "--outline"});

@@ -74,9 +74,9 @@ class EmptyPicture : public ::testing::Test {
       ASSERT_FALSE(value.empty()) << option << ": " << warning;
       Names all = words;
       all.insert(all.end(), {option, value});
-      const Outcome mended = render(input, all, ranks);
+      const Outcome repaired = render(input, all, ranks);
       EXPECT_TRUE(shows_something(picture)) << option << ' ' << value;
-      EXPECT_EQ(mended.err.find(empty), std::string::npos) << mended.err;
+      EXPECT_EQ(repaired.err.find(empty), std::string::npos) << repaired.err;
     }
   }
 

@@ -41,9 +41,9 @@ TEST(FirstPicture, WarnsOfAnInvisibleFunctionWithTheOptionThatFixesIt) {
   EXPECT_EQ(nothing.status, 0);
   EXPECT_NE(nothing.err.find("tessera: warning: "), std::string::npos) << nothing.err;
   EXPECT_NE(nothing.err.find("--rescale"), std::string::npos) << nothing.err;
-  for (const std::vector<std::string>& mended : {std::vector<std::string>{"--rescale"}, {"--range", "0,1"}}) {
+  for (const std::vector<std::string>& remedy : {std::vector<std::string>{"--rescale"}, {"--range", "0,1"}}) {
     std::vector<std::string> with = command;
-    with.insert(with.end(), mended.begin(), mended.end());
+    with.insert(with.end(), remedy.begin(), remedy.end());
     const Outcome shown = tessera(with);
     EXPECT_EQ(shown.status, 0);
     EXPECT_EQ(shown.err.find("warning"), std::string::npos) << shown.err;

@@ -45,7 +45,7 @@ class SameFiles : public ::testing::Test {
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   void same_for_both(const std::string& name) const { fs::copy(folder_ / ("0/" + name), folder_ / ("1/" + name)); }
 
-  void expect_told(const Words& arguments, const std::string& file) const {
+  void expect_reported(const Words& arguments, const std::string& file) const {
     const Outcome run = in_own_folders(folder_, arguments);
     EXPECT_EQ(run.status, 2) << run.err;
     ASSERT_EQ(run.own_lines().size(), 1u) << run.err;
@@ -58,7 +58,7 @@ class SameFiles : public ::testing::Test {
 TEST_F(SameFiles, ReportsDifferentMeshes) {
   make("0/m.tets", {"generate", "cube", folder_ / "0/m.tets", "n=4"});
   make("1/m.tets", {"generate", "cube", folder_ / "1/m.tets", "n=3"});
-  expect_told({"render", "m.tets", "-o", "a.png", "--size", "16x16"}, "m.tets");
+  expect_reported({"render", "m.tets", "-o", "a.png", "--size", "16x16"}, "m.tets");
 }
 
 TEST_F(SameFiles, ReportsDifferentPieces) {
@@ -68,7 +68,7 @@ TEST_F(SameFiles, ReportsDifferentPieces) {
     make(std::string(rank) + "/p.pvtu", {"convert", folder_ / (std::string(rank) + "/m.tets"),
                                          folder_ / (std::string(rank) + "/p.pvtu"), "--pieces", "2", "--quiet"});
   fs::copy_file(folder_ / "0/p.pvtu", folder_ / "1/p.pvtu", fs::copy_options::overwrite_existing);
-  expect_told({"render", "p.pvtu", "-o", "a.png", "--size", "16x16"}, "p_0001.vtu");
+  expect_reported({"render", "p.pvtu", "-o", "a.png", "--size", "16x16"}, "p_0001.vtu");
 }
 
 // They once waited for each other's cells without end.
@@ -82,7 +82,7 @@ TEST_F(SameFiles, ReportsDifferentVolumes) {
     text.append(half, '\1').append(half, '\7');
     write(std::string(rank) + "/v.nrrd", text);
   }
-  expect_told({"render", "v.nrrd", "-o", "a_%02d.png", "--orbit", "3", "--size", "16x16"}, "v.nrrd");
+  expect_reported({"render", "v.nrrd", "-o", "a_%02d.png", "--orbit", "3", "--size", "16x16"}, "v.nrrd");
 }
 
 TEST_F(SameFiles, ReportsDifferentSamplesOfAHeader) {
@@ -93,7 +93,7 @@ TEST_F(SameFiles, ReportsDifferentSamplesOfAHeader) {
     for (int i = 0; i < 125; ++i) samples += static_cast<char>(*rank == '0' ? i : 124 - i);
     write(std::string(rank) + "/d.raw", samples);
   }
-  expect_told({"render", "d.mhd", "-o", "a.png", "--size", "16x16"}, "d.raw");
+  expect_reported({"render", "d.mhd", "-o", "a.png", "--size", "16x16"}, "d.raw");
 }
 
 TEST_F(SameFiles, ReportsDifferentCamerasAndFunctions) {
@@ -101,10 +101,10 @@ TEST_F(SameFiles, ReportsDifferentCamerasAndFunctions) {
   same_for_both("m.tets");
   write("0/cam.json", R"({"position":[0.5,0.5,9],"focal_point":[0.5,0.5,0.5],"parallel_scale":1})");
   write("1/cam.json", R"({"position":[0.5,0.5,9],"focal_point":[0.5,0.5,0.5],"parallel_scale":2})");
-  expect_told({"render", "m.tets", "-o", "a.png", "--size", "16x16", "--camera", "cam.json"}, "cam.json");
+  expect_reported({"render", "m.tets", "-o", "a.png", "--size", "16x16", "--camera", "cam.json"}, "cam.json");
   write("0/tf.json", R"({"knots":[[0,1,0,0,1],[1,0,0,1,1]]})");
   write("1/tf.json", R"({"knots":[[0,1,0,0,1],[1,0,0,1,2]]})");
-  expect_told({"render", "m.tets", "-o", "a.png", "--size", "16x16", "--transfer-function", "tf.json"}, "tf.json");
+  expect_reported({"render", "m.tets", "-o", "a.png", "--size", "16x16", "--transfer-function", "tf.json"}, "tf.json");
 }
 
 TEST_F(SameFiles, CopiesOfOneFileAreTheSameWhateverTheirTime) {

@@ -108,11 +108,11 @@ TEST_F(SeriesDefaults, GoByTheStepsThatVary) {
     EXPECT_EQ(report.at("transfer_function").at("knots").back().at(0), 2);
     const Json by_default = report_of(input);
     EXPECT_GT(by_default.at("transfer_function").at("range").at(1), 1.5);
-    const Json said = info_of(input);
-    EXPECT_EQ(said.at("field").at("name"), "conc");
-    EXPECT_EQ(said.at("time_steps").at("range"), Json({0, 2}));
-    EXPECT_EQ(said.at("renders").at("transfer_function"), by_default.at("transfer_function"));
-    EXPECT_EQ(said.at("notes"), by_default.at("mesh").at("notes"));
+    const Json info = info_of(input);
+    EXPECT_EQ(info.at("field").at("name"), "conc");
+    EXPECT_EQ(info.at("time_steps").at("range"), Json({0, 2}));
+    EXPECT_EQ(info.at("renders").at("transfer_function"), by_default.at("transfer_function"));
+    EXPECT_EQ(info.at("notes"), by_default.at("mesh").at("notes"));
   }
   // A single step uses its own values.
   EXPECT_EQ(info_of(pvd, {"--time-step", "0"}).at("field").at("name"), "depth");
@@ -242,9 +242,9 @@ TEST_F(SeriesDefaults, LegacyFilesAndListsOfPiecesHaveTheTimesThatTheyState) {
 TEST_F(SeriesDefaults, InfoAndRenderShowTheSameOfIdsAlone) {
   int count = 0;
   const std::string file = folder.file("ids.vtu", row_of_cubes({{"GlobalNodeId", [&](double) { return ++count; }}}));
-  const Json said = info_of(file);
-  EXPECT_EQ(said.at("field").at("name"), "shape (depth)");
-  EXPECT_EQ(report_of(file).at("mesh").at("field"), said.at("field"));
+  const Json info = info_of(file);
+  EXPECT_EQ(info.at("field").at("name"), "shape (depth)");
+  EXPECT_EQ(report_of(file).at("mesh").at("field"), info.at("field"));
 }
 
 TEST_F(SeriesDefaults, NeverShowAFieldInSomeStepsAndTheShapeInOthers) {

@@ -30,7 +30,7 @@ TEST(SettingWords, OtherTextIsUnchanged) {
 }
 
 /// The line that `tessera` prints on stderr, without the line end.
-std::string said(const std::vector<std::string>& arguments) {
+std::string error_line(const std::vector<std::string>& arguments) {
   std::string words = tessera(arguments).err;
   if (words.ends_with('\n')) words.pop_back();
   return words;
@@ -55,14 +55,14 @@ TEST(SettingWords, ErrorLinesNameOptions) {
   for (const auto& [arguments, line] : cases) {
     std::vector<std::string> all = head;
     all.insert(all.end(), arguments.begin(), arguments.end());
-    EXPECT_EQ(said(all), "tessera: " + line);
+    EXPECT_EQ(error_line(all), "tessera: " + line);
   }
-  EXPECT_EQ(said({"info", samples}),
+  EXPECT_EQ(error_line({"info", samples}),
             "tessera: " + samples +
                 ": a raw file does not state its dimensions and type; give --dims WxHxD --type "
                 "uint8, or name it NAME_WxHxD_uint8.raw");
   const auto trace = folder.file("t.json", "[]");
-  EXPECT_EQ(said({"timing", trace}),
+  EXPECT_EQ(error_line({"timing", trace}),
             "tessera: " + trace + ": no span of Tessera in it; give a file that tessera render --timing wrote");
 }
 
@@ -71,7 +71,7 @@ TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   const auto mesh = folder.cube(), report = folder / "r.json";
   const auto line_of = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"render", mesh, "-o", folder / "a.png", "--size", "8x8", "--report", report});
-    return said(more);
+    return error_line(more);
   };
   const auto holds = [](const std::string& text, const std::string& words) {
     EXPECT_NE(text.find(words), std::string::npos) << words << " in " << text;
@@ -89,7 +89,7 @@ TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   std::vector<std::string> volume = {"render", folder.file("v.raw", std::string(8, '\1')), "-o", folder / "v.png"};
   volume.insert(volume.end(), raw.begin(), raw.end());
   volume.insert(volume.end(), {"--size", "8x8", "--unit-distance", "3"});
-  holds(said(volume), ", unit distance 3 (--unit-distance)\n");
+  holds(error_line(volume), ", unit distance 3 (--unit-distance)\n");
 }
 
 }  // namespace

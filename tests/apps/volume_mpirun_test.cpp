@@ -105,8 +105,8 @@ TEST_F(VolumeMpirun, AllProcessesFindTheSameLabelsAndFillValues) {
   test::SomeCases some(2);
   for (const int ranks : {3, 2}) {
     if (!some.next()) continue;
-    const std::string said = run(label_file, ranks, folder_ / "labels.exr");
-    EXPECT_EQ(count(said, "values are labels, 7 of them"), 1u) << said;
+    const std::string notes = run(label_file, ranks, folder_ / "labels.exr");
+    EXPECT_EQ(count(notes, "values are labels, 7 of them"), 1u) << notes;
     EXPECT_EQ(contents(folder_ / "labels.exr"), contents(folder_ / "labels_one.exr")) << ranks;
     const std::string noted = run(fill_file, ranks, folder_ / "fill.exr");
     EXPECT_EQ(count(noted, "1 samples have the value 1e+20, a fill value"), 1u) << noted;

@@ -18,15 +18,15 @@ struct Cubes {
           points.insert(points.end(), {1.0 * i, 1.0 * j, 1.0 * k});
           scalars.push_back(i * j - 0.5 * k * i);
         }
-    constexpr int ways[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
+    constexpr int orders[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i, ++cubes)
-          for (const auto& way : ways) {
+          for (const auto& order : orders) {
             const auto corner = [&](int bits) {
               return point(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1));
             };
-            tets.insert(tets.end(), {corner(0), corner(way[0]), corner(way[1]), corner(7)});
+            tets.insert(tets.end(), {corner(0), corner(order[0]), corner(order[1]), corner(7)});
             cube_of.push_back(cubes);
           }
   }

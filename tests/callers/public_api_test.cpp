@@ -340,8 +340,8 @@ TEST(CallersDevice, PromisesAnErrorWhereNoDeviceIsRequested) {
 }
 
 TEST(CallersJob, OneProcessIsAJobToo) {
-  int spoken = 0;
-  Job job({"test", "start again", [&](const Error&) { ++spoken; }});
+  int reports = 0;
+  Job job({"test", "start again", [&](const Error&) { ++reports; }});
   EXPECT_EQ(job.rank(), 0);
   EXPECT_EQ(job.size(), 1);
   EXPECT_EQ(job.communicator().size(), 1);
@@ -351,7 +351,7 @@ TEST(CallersJob, OneProcessIsAJobToo) {
   const auto error = job.finish();
   ASSERT_TRUE(error);
   EXPECT_STREQ(error->what(), "thing: is wrong; correct it");
-  EXPECT_EQ(spoken, 1);
+  EXPECT_EQ(reports, 1);
 }
 
 TEST(CallersErrors, AnyExceptionHasAnError) {

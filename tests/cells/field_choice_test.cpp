@@ -31,9 +31,9 @@ std::vector<cells::FieldSummary> summary(std::span<const cells::CellBlock> block
   return cells::summarize_fields(std::span(&tallies, 1));
 }
 
-cells::FieldChoice choose(const std::string& wish, const cells::CellBlock& block) {
+cells::FieldChoice choose(const std::string& requested, const cells::CellBlock& block) {
   const std::vector<cells::CellBlock> blocks = {block};
-  return cells::choose_field(wish, summary(blocks), "mesh.vtu");
+  return cells::choose_field(requested, summary(blocks), "mesh.vtu");
 }
 
 const cells::CellBlock flow = block_with(

@@ -43,9 +43,9 @@ constexpr long spare_mebibytes = 256;
 
 double processor_seconds() {
   double seconds = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+  for (const int process : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
     rusage usage{};
-    getrusage(who, &usage);
+    getrusage(process, &usage);
     for (const timeval& time : {usage.ru_utime, usage.ru_stime})
       seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   }
@@ -170,22 +170,23 @@ std::optional<Memory> memory_of_intact(const fs::path& file) {
     bool opened = false;
     (void)fault_of(file, opened);
     const Memory memory = memory_so_far();
-    const bool is_told = opened && ::write(ends[1], &memory, sizeof(memory)) == sizeof(memory);
-    ::_exit(is_told ? 0 : 1);
+    const bool is_written = opened && ::write(ends[1], &memory, sizeof(memory)) == sizeof(memory);
+    ::_exit(is_written ? 0 : 1);
   }
   ::close(ends[1]);
   Memory memory;
-  const bool is_told = ::read(ends[0], &memory, sizeof(memory)) == sizeof(memory);
+  const bool is_written = ::read(ends[0], &memory, sizeof(memory)) == sizeof(memory);
   ::close(ends[0]);
   ::waitpid(child, nullptr, 0);
-  return is_told ? std::optional(memory) : std::nullopt;
+  return is_written ? std::optional(memory) : std::nullopt;
 }
 
 /// The fault in the memory of a run, given the peaks before and after it.
 std::string memory_fault(const Memory& before, const Memory& after, const Memory& intact) {
   std::string fault;
-  const auto judge = [&](const char* who, long had, long has, long whole) {
-    if (has > had && has > 2 * whole + spare_mebibytes) fault += fmt::format("{} {} MiB, intact {}; ", who, has, whole);
+  const auto judge = [&](const char* process, long had, long has, long whole) {
+    if (has > had && has > 2 * whole + spare_mebibytes)
+      fault += fmt::format("{} {} MiB, intact {}; ", process, has, whole);
   };
   judge("this process", before.own, after.own, intact.own);
   judge("the helper", before.helper, after.helper, intact.helper);

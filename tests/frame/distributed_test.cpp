@@ -448,7 +448,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
   DistributedSettings settings;
   settings.render = exact();
   for (int broken = 0; broken < 4; ++broken) {
-    std::atomic<int> told = 0;
+    std::atomic<int> calls = 0;
     try {
       exchange::run_ranks(4, [&](exchange::Transport& transport) {
         DistributedSettings mine = settings;
@@ -468,7 +468,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
               [&](FinishedFrame) {});
         } catch (const scene::Error& error) {
           EXPECT_STREQ(error.what(), "piece_2.vtu: is cut short; copy it again");
-          ++told;
+          ++calls;
           throw;
         }
       });
@@ -476,7 +476,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
     } catch (const scene::Error& error) {
       EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
     }
-    EXPECT_EQ(told, 4);
+    EXPECT_EQ(calls, 4);
   }
 }
 

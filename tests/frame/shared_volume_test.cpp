@@ -53,19 +53,19 @@ class SharedVolume : public ::testing::Test {
   /// The error that ends the run, thrown on every rank.
   [[nodiscard]] static test::Fault fault(const std::filesystem::path& file, int ranks) {
     std::mutex mutex;
-    std::multiset<std::string> told;
+    std::multiset<std::string> messages;
     const test::Fault ended = test::fault_of([&] {
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
         try {
           static_cast<void>(open_shared_volume(transport, io::identify(file), {}));
         } catch (const scene::Error& error) {
           const std::lock_guard lock(mutex);
-          told.insert(error.what());
+          messages.insert(error.what());
           throw;
         }
       });
     });
-    EXPECT_EQ(told.count(ended.message), static_cast<std::size_t>(ranks)) << ended.message;
+    EXPECT_EQ(messages.count(ended.message), static_cast<std::size_t>(ranks)) << ended.message;
     return ended;
   }
 

@@ -233,7 +233,7 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   // Steps, for which float lanes are not certain everywhere.
   c.knots = {{0, {0.2, 0.4, 1}, 0}, {0.5, {0.2, 0.4, 1}, 0}, {0.5, {1, 0.5, 0.2}, 5}, {1, {1, 0.5, 0.2}, 5}};
   constexpr scene::ImageSize size{60, 50};
-  std::vector<int> told(60 * 50, 0);
+  std::vector<int> reported(60 * 50, 0);
   std::vector<float> alpha(60 * 50, -1);
   const auto ranges = std::make_shared<const volume::CellRanges>(*c.source, 1);
   std::optional<FinishedVolumeFrame> finished;
@@ -243,7 +243,7 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
     scene::FrameWatch watch({}, [&](const scene::PixelRect& rect, const scene::Image& image) {
       for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
-          ++told[image.index(x, y)];
+          ++reported[image.index(x, y)];
           alpha[image.index(x, y)] = image.rgba[4 * image.index(x, y) + 3];
         }
     });
@@ -258,16 +258,16 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
     EXPECT_EQ(finished->statistics.*counter.member, together.*counter.member) << counter.name;
   EXPECT_GT(finished->statistics.exchange_messages, 4u * 5u - 1);
   ASSERT_EQ(finished->parts.size(), 5u);
-  EXPECT_EQ(finished->error_bounds.size(), told.size());
+  EXPECT_EQ(finished->error_bounds.size(), reported.size());
   EXPECT_GT(*std::ranges::max_element(finished->error_bounds), 0.0f);
-  std::vector<int> covered(told.size(), 0);
+  std::vector<int> covered(reported.size(), 0);
   for (const scene::PixelRect& r : finished->regions)
     for (int y = r.y0; y < r.y1; ++y)
       for (int x = r.x0; x < r.x1; ++x) ++covered[finished->image.index(x, y)];
-  for (std::size_t pixel = 0; pixel < told.size(); ++pixel) {
-    ASSERT_EQ(told[pixel], 1) << pixel;
+  for (std::size_t pixel = 0; pixel < reported.size(); ++pixel) {
+    ASSERT_EQ(reported[pixel], 1) << pixel;
     ASSERT_EQ(covered[pixel], 1) << pixel;
-    ASSERT_EQ(alpha[pixel], finished->image.rgba[4 * pixel + 3]) << "told before it was final";
+    ASSERT_EQ(alpha[pixel], finished->image.rgba[4 * pixel + 3]) << "reported before it was final";
   }
 }
 

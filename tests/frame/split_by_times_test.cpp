@@ -24,22 +24,22 @@ const VolumeJob job = [] {
 }();
 
 /// Two ranks, each with the left or right half, with 50 ms of tile work each, and the given milliseconds of other work.
-std::vector<CastTimes> times(double beside_first, double beside_second) {
+std::vector<CastTimes> times(double first_other_work, double second_other_work) {
   constexpr double half_ms = 50;
   std::vector<CastTimes> ranks(2);
   for (std::uint64_t rank = 0; rank < 2; ++rank) {
     const int x0 = rank == 0 ? 0 : side / 2;
     const scene::PixelRect pixels{x0, 0, x0 + side / 2, side};
-    const double beside_ms = rank == 0 ? beside_first : beside_second;
-    ranks[rank] = {true, rank + 1, 1e-3 * (half_ms + beside_ms), {{pixels, static_cast<float>(1e3 * half_ms)}}};
+    const double other_work_ms = rank == 0 ? first_other_work : second_other_work;
+    ranks[rank] = {true, rank + 1, 1e-3 * (half_ms + other_work_ms), {{pixels, static_cast<float>(1e3 * half_ms)}}};
   }
   return ranks;
 }
 
 /// The weights when one image is all that is known about the ranks' other work.
-std::vector<double> weights_of(double beside_first, double beside_second) {
+std::vector<double> weights_of(double first_other_work, double second_other_work) {
   SplitByTimes splits;
-  splits.learn(job, box, times(beside_first, beside_second));
+  splits.learn(job, box, times(first_other_work, second_other_work));
   return splits.weights();
 }
 

@@ -41,31 +41,31 @@ std::vector<VolumeJob> turn() {
   return jobs;
 }
 
-enum class Way { first, last };
+enum class SortMode { first, last };
 
-std::unique_ptr<VolumeFrames> frames_of(Way way, exchange::Transport& transport) {
-  if (way == Way::first) return std::make_unique<SortFirst>(transport, Settings{});
+std::unique_ptr<VolumeFrames> frames_of(SortMode mode, exchange::Transport& transport) {
+  if (mode == SortMode::first) return std::make_unique<SortFirst>(transport, Settings{});
   return std::make_unique<SortLast>(transport, Settings{});
 }
 
 /// Calls `work` on every rank with its renderer, its frames and the list.
-void on_ranks(Way way, int ranks, const scene::SampleSource& source,
+void on_ranks(SortMode mode, int ranks, const scene::SampleSource& source,
               const std::function<void(exchange::Transport&, volume::Renderer&, VolumeFrames&)>& work) {
   const auto ranges = std::make_shared<const volume::CellRanges>(source, 1);
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
     volume::RenderSettings settings;
     settings.threads = 1;
     settings.grid.brick_size = 8;
-    settings.parts = way == Way::last ? ranks : 1;
+    settings.parts = mode == SortMode::last ? ranks : 1;
     volume::Renderer renderer(source, settings, ranges);
-    const auto frames = frames_of(way, transport);
+    const auto frames = frames_of(mode, transport);
     work(transport, renderer, *frames);
   });
 }
 
-class VolumeLists : public testing::TestWithParam<Way> {};
-INSTANTIATE_TEST_SUITE_P(Ways, VolumeLists, testing::Values(Way::first, Way::last),
-                         [](const auto& way) { return way.param == Way::first ? "SortFirst" : "SortLast"; });
+class VolumeLists : public testing::TestWithParam<SortMode> {};
+INSTANTIATE_TEST_SUITE_P(SortModes, VolumeLists, testing::Values(SortMode::first, SortMode::last),
+                         [](const auto& mode) { return mode.param == SortMode::first ? "SortFirst" : "SortLast"; });
 
 TEST_P(VolumeLists, GiveTheBitsOfSeparateImagesInOrderAndReportEveryPixelOnce) {
   const auto source = waves();
@@ -79,8 +79,8 @@ TEST_P(VolumeLists, GiveTheBitsOfSeparateImagesInOrderAndReportEveryPixelOnce) {
     ASSERT_EQ(one_by_one.size(), pictures);
     for (const int in_flight : {1, 2, 4}) {
       std::vector<std::size_t> order;
-      std::vector<std::vector<int>> told(pictures,
-                                         std::vector<int>(static_cast<std::size_t>(size.width * size.height)));
+      std::vector<std::vector<int>> reported(pictures,
+                                             std::vector<int>(static_cast<std::size_t>(size.width * size.height)));
       VolumeCallbacks callbacks;
       callbacks.frame = [&](FinishedVolumeFrame&& frame) {
         EXPECT_FALSE(frame.stopped);
@@ -91,7 +91,7 @@ TEST_P(VolumeLists, GiveTheBitsOfSeparateImagesInOrderAndReportEveryPixelOnce) {
       callbacks.tile = [&](std::size_t frame, const scene::PixelRect& r, const scene::Image& image) {
         for (int y = r.y0; y < r.y1; ++y)
           for (int x = r.x0; x < r.x1; ++x) {
-            ++told[frame][image.index(x, y)];
+            ++reported[frame][image.index(x, y)];
             const std::size_t at = 4 * image.index(x, y);
             for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(image.rgba[at + c], one_by_one[frame].rgba[at + c]);
           }
@@ -105,7 +105,7 @@ TEST_P(VolumeLists, GiveTheBitsOfSeparateImagesInOrderAndReportEveryPixelOnce) {
                });
       ASSERT_EQ(order.size(), pictures);
       for (std::size_t i = 0; i < pictures; ++i) EXPECT_EQ(order[i], i);
-      for (const auto& pixels : told)
+      for (const auto& pixels : reported)
         for (const int count : pixels) ASSERT_EQ(count, 1);
     }
   }
@@ -203,7 +203,7 @@ TEST_P(VolumeLists, AFaultOnAnyRankEndsTheRunOnAll) {
       const Failing failing(*source);
       failing.left = transport.rank() == faulty ? 5 : 1000000;
       volume::RenderSettings settings;
-      settings.threads = 1, settings.grid.brick_size = 8, settings.parts = GetParam() == Way::last ? 3 : 1;
+      settings.threads = 1, settings.grid.brick_size = 8, settings.parts = GetParam() == SortMode::last ? 3 : 1;
       volume::Renderer renderer(failing, settings, ranges);
       const auto frames = frames_of(GetParam(), transport);
       const VolumeCallbacks callbacks{[](FinishedVolumeFrame&&) {}, {}};

@@ -51,8 +51,8 @@ void judge(const Start& start) {
   try {
     start();
   } catch (const scene::Error& error) {
-    const bool says = std::string(error.what()).find("lower `threads`") != std::string::npos;
-    std::_Exit(error.code() == scene::ErrorCode::system_failure && says ? 7 : 1);
+    const bool has_remedy = std::string(error.what()).find("lower `threads`") != std::string::npos;
+    std::_Exit(error.code() == scene::ErrorCode::system_failure && has_remedy ? 7 : 1);
   }
   std::_Exit(0);
 }

@@ -129,23 +129,23 @@ TEST(Helper, ReportsProgress) {
   const std::string element = "<UnstructuredGrid";
   text.insert(text.find(element + ">") + element.size(), " TimeValues=\"0\"");  // only VTK's reader supports them
   const auto file = folder.write("m.vtu", text);
-  std::vector<ReadProgress> heard;
+  std::vector<ReadProgress> reported;
   ReadOptions options;
-  options.progress = [&](const ReadProgress& progress) { heard.push_back(progress); };
+  options.progress = [&](const ReadProgress& progress) { reported.push_back(progress); };
   const cells::MeshFile mesh = read_mesh(file, options);
   EXPECT_GT(mesh.mesh.positions.size(), 100000u);
   std::size_t reading = 0;
-  for (std::size_t k = 0; k < heard.size(); ++k) {
-    EXPECT_GE(heard[k].done, 0);
-    EXPECT_LE(heard[k].done, 1);
-    if (heard[k].stage == ReadProgress::Stage::reading) ++reading;
-    if (k == 0 || heard[k].stage != heard[k - 1].stage) continue;
-    EXPECT_GE(heard[k].done, heard[k - 1].done);
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    EXPECT_GE(reported[k].done, 0);
+    EXPECT_LE(reported[k].done, 1);
+    if (reported[k].stage == ReadProgress::Stage::reading) ++reading;
+    if (k == 0 || reported[k].stage != reported[k - 1].stage) continue;
+    EXPECT_GE(reported[k].done, reported[k - 1].done);
   }
   EXPECT_GT(reading, 0u);
-  ASSERT_FALSE(heard.empty());
-  EXPECT_EQ(heard.back().stage, ReadProgress::Stage::copying);
-  EXPECT_EQ(heard.back().done, 1);
+  ASSERT_FALSE(reported.empty());
+  EXPECT_EQ(reported.back().stage, ReadProgress::Stage::copying);
+  EXPECT_EQ(reported.back().done, 1);
 }
 
 TEST(Helper, StreamsAnArrayInPartsAndGoesOnAfterAnExceptionInOne) {

@@ -96,7 +96,7 @@ TEST(NetcdfAxes, FollowTheirAttributesInEveryOrderAndDirection) {
 TEST(NetcdfAxes, AreKnownByAnyOfTheirAttributesOrTheirNames) {
   const test::TemporaryFolder folder;
   const auto file = folder / "marked.nc";
-  const std::vector<std::array<std::pair<const char*, Texts>, 3>> ways = {
+  const std::vector<std::array<std::pair<const char*, Texts>, 3>> cases = {
       {{{"a", {{"axis", "X"}}}, {"b", {{"axis", "Y"}}}, {"c", {{"axis", "Z"}}}}},
       {{{"a", {{"_CoordinateAxisType", "GeoX"}}},
         {"b", {{"_CoordinateAxisType", "GeoY"}}},
@@ -110,11 +110,11 @@ TEST(NetcdfAxes, AreKnownByAnyOfTheirAttributesOrTheirNames) {
       {{{"rlon", {}}, {"unheard_of", {}}, {"level", {}}}},
   };
   test::SomeCases some(4);
-  for (const auto& way : ways) {
-    SCOPED_TRACE(way[0].first);
-    const std::array<AxisOfFile, 3> axes = {AxisOfFile{way[0].first, way[0].second, {0, 1, 2, 3, 4}},
-                                            AxisOfFile{way[1].first, way[1].second, {0, 1, 2, 3}},
-                                            AxisOfFile{way[2].first, way[2].second, {5, 6, 7}}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c[0].first);
+    const std::array<AxisOfFile, 3> axes = {AxisOfFile{c[0].first, c[0].second, {0, 1, 2, 3, 4}},
+                                            AxisOfFile{c[1].first, c[1].second, {0, 1, 2, 3}},
+                                            AxisOfFile{c[2].first, c[2].second, {5, 6, 7}}};
     for (const std::array<std::size_t, 3>& order : {std::array<std::size_t, 3>{0, 1, 2}, {2, 0, 1}, {1, 2, 0}}) {
       if (!some.next()) continue;
       write_marked(file, axes, order);

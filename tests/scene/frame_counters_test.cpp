@@ -47,11 +47,11 @@ TEST(FrameCounters, EachIsListedOnceAndCombinedAsDeclared) {
 TEST(FrameCounters, TheReferenceDescribesEachCounter) {
   std::ifstream file(TESSERA_SOURCE_DIR "/docs/REFERENCE.md");
   const std::string guide{std::istreambuf_iterator<char>(file), {}};
-  const auto expect_said = [&](std::string_view name, std::string_view meaning) {
+  const auto expect_described = [&](std::string_view name, std::string_view meaning) {
     EXPECT_NE(guide.find("| `" + std::string(name) + "` | " + std::string(meaning) + " |"), std::string::npos) << name;
   };
-  for (const FrameCounter& counter : frame_counters) expect_said(counter.name, counter.meaning);
-  for (const GridCounter& counter : grid_counters) expect_said(counter.name, counter.meaning);
+  for (const FrameCounter& counter : frame_counters) expect_described(counter.name, counter.meaning);
+  for (const GridCounter& counter : grid_counters) expect_described(counter.name, counter.meaning);
 }
 
 }  // namespace

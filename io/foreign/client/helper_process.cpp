@@ -334,10 +334,10 @@ void HelperProcess::stream(const ForeignArray& array, const std::string& subject
       for (std::uint64_t part = 0; part < parts; ++part) {
         await();
         use(window_.bytes().subspan(part % slots * slot_bytes, count_of(part) * tuple));
-        came_ += count_of(part) * tuple;
+        received_ += count_of(part) * tuple;
         if (task_.progress && expected_ > 0)
           task_.progress({ReadProgress::Stage::copying,
-                          std::min(static_cast<double>(came_) / static_cast<double>(expected_), 1.0)});
+                          std::min(static_cast<double>(received_) / static_cast<double>(expected_), 1.0)});
         if (asked < parts) ask();
       }
     } catch (...) {

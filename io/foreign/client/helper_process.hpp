@@ -96,7 +96,7 @@ class HelperProcess final : public ArraySource {
   void stream(const ForeignArray& array, const std::string& subject,
               const std::function<void(std::span<const std::byte> tuples)>& use, Then then) override;
 
-  void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
+  void expect(std::uint64_t bytes) override { expected_ = bytes, received_ = 0; }
   void drop(std::span<const std::uint64_t> arrays) noexcept override;
 
   /// Its process id, for tests; -1 once it has died.
@@ -117,12 +117,12 @@ class HelperProcess final : public ArraySource {
   std::mutex mutex_;
   int process_ = -1;
   system::Descriptor socket_;
-  SharedBytes window_;                     ///< slots for stream(); empty until first used
-  std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
-  bool has_begun_ = false;                 ///< its first message has arrived
-  bool waits_ = false;                     ///< it was killed because it waited too long
-  std::string reading_;                    ///< the file that it is reading, of several; empty: not reported yet
-  std::optional<HelperDeath> death_;       ///< set once it is dead
+  SharedBytes window_;                         ///< slots for stream(); empty until first used
+  std::uint64_t expected_ = 0, received_ = 0;  ///< bytes of stream()
+  bool has_begun_ = false;                     ///< its first message has arrived
+  bool waits_ = false;                         ///< it was killed because it waited too long
+  std::string reading_;                        ///< the file that it is reading, of several; empty: not reported yet
+  std::optional<HelperDeath> death_;           ///< set once it is dead
 };
 
 }  // namespace tessera::io

@@ -94,7 +94,7 @@ const SameSize& choose_arrays(const std::vector<SameSize>& sizes, const std::str
   return *chosen;
 }
 
-std::optional<std::size_t> step_wish(const nlohmann::json& request) {
+std::optional<std::size_t> requested_step(const nlohmann::json& request) {
   const auto step = request.find("time_step");
   return step == request.end() ? std::nullopt : std::optional(step->get<std::size_t>());
 }
@@ -136,7 +136,7 @@ io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const 
   if (!request.value("look", false)) {
     const auto longest = std::max_element(chosen.begin(), chosen.end(),
                                           [](const GridArray& a, const GridArray& b) { return a.steps() < b.steps(); });
-    contents.time_step = scene::chosen_step(step_wish(request), longest->steps(), source);
+    contents.time_step = scene::chosen_step(requested_step(request), longest->steps(), source);
     if (longest->steps() > 1)
       contents.notes.push_back(fmt::format("time steps are counted along the first of the dimensions of {}, {}",
                                            longest->array->path, fmt::join(longest->array->lengths, " x ")));
@@ -211,18 +211,18 @@ io::ForeignContents read_vtk_hdf_image(Holdings& holdings, const Hdf5File& file,
   io::ForeignContents contents;
   contents.format = "VTKHDF";
   io::ForeignPart part = image_of(file, source);
-  const bool only_look = request.value("look", false);
+  const bool headers_only = request.value("look", false);
   const long steps = std::max(file.number_of("VTKHDF/Steps", "NSteps", 0), 0L);
-  if (!only_look)
-    contents.time_step = scene::chosen_step(step_wish(request), static_cast<std::uint64_t>(steps), source);
-  if (steps > 0 && !only_look)
+  if (!headers_only)
+    contents.time_step = scene::chosen_step(requested_step(request), static_cast<std::uint64_t>(steps), source);
+  if (steps > 0 && !headers_only)
     for (const Hdf5Array& array : file.arrays("VTKHDF/Steps"))
       if (array.path == "VTKHDF/Steps/Values" && array.lengths.size() == 1 &&
           array.lengths[0] == static_cast<std::size_t>(steps))
         scene::set_times(contents.time_step,
                          file.read(array, std::array<std::size_t, 1>{0}, array.lengths).as_doubles());
   for (const bool of_points : {true, false}) {
-    if (only_look) break;
+    if (headers_only) break;
     const std::string kind = of_points ? "PointData" : "CellData", group = "VTKHDF/" + kind;
     std::array<std::size_t, 3> count{};
     for (std::size_t a = 0; a < 3; ++a) {

@@ -44,9 +44,9 @@ class HdfMesh {
     contents.block_names.emplace_back();
     const auto times = static_cast<long>(numbers("Steps/Values").size());
     const long steps = std::max(file_.number_of("VTKHDF/Steps", "NSteps", times), 0L);
-    const auto wish = request.find("time_step");
+    const auto requested = request.find("time_step");
     contents.time_step =
-        scene::chosen_step(wish == request.end() ? std::nullopt : std::optional(wish->get<std::size_t>()),
+        scene::chosen_step(requested == request.end() ? std::nullopt : std::optional(requested->get<std::size_t>()),
                            static_cast<std::uint64_t>(steps), source_);
     if (steps > 0) {
       step_ = contents.time_step.step;

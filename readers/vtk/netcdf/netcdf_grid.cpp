@@ -318,9 +318,9 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
   const GridVariable* with_steps = nullptr;
   for (const GridVariable& field : grid.fields)
     if (steps_of(field) > steps) steps = steps_of(field), with_steps = &field;
-  std::optional<std::size_t> wish;
-  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
-  contents.time_step = scene::chosen_step(wish, steps, opened.source());
+  std::optional<std::size_t> requested;
+  if (const auto step = request.find("time_step"); step != request.end()) requested = step->get<std::size_t>();
+  contents.time_step = scene::chosen_step(requested, steps, opened.source());
   if (with_steps != nullptr) {
     note_steps(opened, *with_steps, contents.notes);
     scene::set_times(contents.time_step, times_of(opened, *with_steps));

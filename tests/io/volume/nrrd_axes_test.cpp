@@ -134,9 +134,9 @@ TEST_F(NrrdAxes, KindsAndDirectionsDistinguishListsComponentsAndTime) {
   const VolumeFile planar = open(last + "vector", {.field = "samples:1"});
   EXPECT_EQ(planar.fields.front().components, 2);
   EXPECT_EQ(all_samples(*planar.source)[1], 25);
-  const VolumeFile unsaid = open("dimension: 4\nsizes: 2 4 3 2\n");
-  EXPECT_EQ(unsaid.fields.front().components, 2);
-  EXPECT_TRUE(has_note(unsaid, "the first of its 4 axes, of 2 samples, is taken for components"));
+  const VolumeFile unstated = open("dimension: 4\nsizes: 2 4 3 2\n");
+  EXPECT_EQ(unstated.fields.front().components, 2);
+  EXPECT_TRUE(has_note(unstated, "the first of its 4 axes, of 2 samples, is taken for components"));
   const std::string first = "dimension: 4\nsizes: 2 4 3 2\nkinds: ";
   EXPECT_EQ(open(first + "list domain domain domain").time_step.count, 2);
   EXPECT_EQ(open(first + "2-vector space space space").fields.front().components, 2);

@@ -270,9 +270,9 @@ TEST_F(VolumeFiles, RawFilesAreDescribedByOptionsOrByName) {
   options.type = SampleType::uint16;
   options.spacing = glm::dvec3(1, 2, 0.5);
   options.skip = 3;
-  const VolumeFile told = open_volume(folder.write("x.raw", "abc" + samples), options);
-  EXPECT_EQ(told.source->geometry().points, (GridIndex{2, 3, 4}));
-  EXPECT_EQ(told.source->geometry().spacing, glm::dvec3(1, 2, 0.5));
+  const VolumeFile described = open_volume(folder.write("x.raw", "abc" + samples), options);
+  EXPECT_EQ(described.source->geometry().points, (GridIndex{2, 3, 4}));
+  EXPECT_EQ(described.source->geometry().spacing, glm::dvec3(1, 2, 0.5));
   expect_refused(folder.write("y.raw", samples), "dimensions and type");
   expect_refused(folder.write("y_4x3x3_uint16.raw", samples), "72 bytes, the file has 48");
   expect_refused(folder.write("y_4x3x1_uint16.raw", samples), "1 point along z");
