@@ -191,7 +191,7 @@ TEST(Probe, AgreesWithThePictureAndItsField) {
   EXPECT_GT(met, 50);
 }
 
-TEST(Probe, DepthsOfOpacityAreThoseOfPicturesThatEndThere) {
+TEST(Probe, OpacityDepthsMatchImagesThatEndThere) {
   for (const Dataset& data : {mesh_of_x(), grid_of_x()}) {
     const View view = view_from({2, 1.4, 4}, true);
     const PixelIndex pixel{24, 17};
@@ -274,7 +274,7 @@ TEST(Probe, OfAClippedGridEndsAtThePlane) {
   }
 }
 
-TEST(Probe, OfAPartIsThatOfTheWhole) {
+TEST(Probe, OfAPartMatchesTheWhole) {
   const scene::TetMesh mesh = with_field(datasets::cube(6), x_of);
   Settings settings;
   settings.surfaces.boundary = {{{}, 0.3}};

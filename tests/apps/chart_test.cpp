@@ -75,7 +75,7 @@ TEST(ChartMeasure, TheParetoFrontHasTheUndominatedMethods) {
 
 nlohmann::json parsed(const std::string& file) { return nlohmann::json::parse(std::ifstream(file)); }
 
-TEST(Chart, AMeshGivesEveryMethodAPlaceOrAReason) {
+TEST(Chart, AMeshChartPlacesEveryMethodOrGivesAReason) {
   const Folder folder;
   const Outcome run = tessera({"chart", folder.cube(), "--size", "24x20", "--repeat", "1", "--budget-seconds", "300",
                                "--quiet", "--json", folder / "c.json", "--csv", folder / "c.csv", "--figure",

@@ -99,7 +99,7 @@ TEST(SharedClock, WithoutFramesTheWholeIsAllThereIs) {
   EXPECT_EQ(share({}).frames.length(), 0);
 }
 
-TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
+TEST(Breakdown, SeparateProjectorsAndCompositorsAddUpToTheWhole) {
   for (const bool shared : {false, true}) {
     const TracedPipeline pipeline{3, 2, shared};
     const analysis::RunTime run = run_of(pipeline);
@@ -154,7 +154,7 @@ TEST(Breakdown, WorkOncePerMeshIsCountedSeparatelyWithItsWorstProcess) {
   EXPECT_EQ(projectors.outside[0].worst_rank, 2);
 }
 
-TEST(Breakdown, ClocksOfRanksAreBroughtTogether) {
+TEST(Breakdown, SynchronizesTheClocksOfRanks) {
   // On their own clocks the ranks would be 1000 s apart.
   const analysis::RunTime run = run_of({2, 1});
   EXPECT_NEAR(run.elapsed_us, 350e3, rounding_us);

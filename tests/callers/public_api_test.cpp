@@ -124,7 +124,7 @@ concept ShowsItsState = requires(const Class& object) {
 || std::constructible_from<Class, std::shared_ptr<const typename Class::State>> ||
     std::constructible_from<Class, std::unique_ptr<typename Class::State>>;
 
-TEST(CallersClasses, KeepTheStateOfTheLibraryToThemselves) {
+TEST(CallersClasses, HideTheLibrarysState) {
   EXPECT_FALSE(ShowsItsState<Dataset>);
   EXPECT_FALSE(ShowsItsState<Session>);
   EXPECT_FALSE(ShowsItsState<Communicator>);

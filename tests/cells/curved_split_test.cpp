@@ -433,7 +433,7 @@ cells::CellBlock folded_box(std::size_t folded, double by) {
   return block;
 }
 
-TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
+TEST(CurvedSplit, RefusesCellsThatNeedUnboundedTets) {
   ReadOptions options = tolerance(1e-5);
   options.higher_order_tets = 20000;
   const auto planning = [](const auto&, const ReadOptions& o, const auto&...) {
@@ -450,7 +450,7 @@ TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
   EXPECT_GT(file.higher_order.tolerance, 1e-5);
 }
 
-TEST(CurvedSplit, TakesTheToleranceThatOneStronglyCurvedCellAllows) {
+TEST(CurvedSplit, LoosensTheToleranceForOneStronglyCurvedCell) {
   // One tet with values 1 at the corners and 0 halfway: more than a million tets at a ten-thousandth.
   cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
@@ -464,7 +464,7 @@ TEST(CurvedSplit, TakesTheToleranceThatOneStronglyCurvedCellAllows) {
   EXPECT_GT(file.higher_order.tets, 10000u);
 }
 
-TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
+TEST(CurvedSplit, GivesACellFewerTetsWhenTheyTakeLonger) {
   const auto limit_of = [&](const Kind& kind, std::size_t limit) {
     const cells::CellBlock block = warped_box(
         kind, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
@@ -478,7 +478,7 @@ TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
   EXPECT_EQ(limit_of({29, 27, 2}, usual), usual);
 }
 
-TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
+TEST(CurvedSplit, RefusesMeshesThatNeedUnboundedTets) {
   const cells::CellBlock block = warped_box(
       kinds[0], 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
   const auto tets_of = [&](std::size_t blocks, std::uint64_t all) {
@@ -499,7 +499,7 @@ TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
   expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each alone is below the limit
 }
 
-TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
+TEST(CurvedSplit, UsesLittleMemoryForADamagedNode) {
   cells::ExcessTally tally{};
   EXPECT_EQ(cells::usual_tets(tally), 1u << 18);
   tally[0] = 1000, tally[40] = 48;

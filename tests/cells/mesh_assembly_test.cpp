@@ -113,7 +113,7 @@ TEST(MeshAssembly, FlatCellsAreKeptAndCounted) {
   EXPECT_EQ(file.mesh.tets.size(), 3u);
 }
 
-TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
+TEST(MeshAssembly, TetsWithCoincidentCornersAreNotMade) {
   cells::CellBlock block = row_of_tets(3);
   block.tets[1][1] = block.tets[1][0];            // a repeated index
   block.positions[8] = block.positions[9] + 0.0;  // another point at the same position
@@ -278,7 +278,7 @@ TEST(MeshAssembly, ReportsTheFirstBadCellWhicheverThreadFindsIt) {
               std::string::npos);
 }
 
-TEST(MeshAssembly, MinusZeroAndZeroAreOnePlace) {
+TEST(MeshAssembly, MinusZeroAndZeroAreTheSamePosition) {
   cells::CellBlock block = row_of_tets(1);
   block.positions[0] = {-0.0, -0.0, -0.0};
   EXPECT_FALSE(std::signbit(assemble(block).mesh.positions[0].x));

@@ -44,7 +44,7 @@ TEST(DefaultFunction, AnOutlierDoesNotDecideTheRange) {
   EXPECT_GE(range.low, 0);
 }
 
-TEST(DefaultFunction, PixelsAreAsOpaqueAsWantedByBeerLambert) {
+TEST(DefaultFunction, PixelsHaveTheTargetOpacityByBeerLambert) {
   // Uniform extinction: each pixel's depth is extinction times the edge, so the factor is known.
   const auto samples = cube_of([](float, float, float) { return 1.0; });
   const std::array<std::array<double, 2>, 1> extinction{{{1, 2}}};
@@ -66,7 +66,7 @@ TEST(DefaultFunction, LabelsGetAColourEachAndAGridsZeroIsClear) {
   EXPECT_GT(default_function({&samples, false}, options_over(0, 4)).function.evaluate(0).extinction, 0);
 }
 
-TEST(DefaultFunction, KnownLabelsHaveNoOpacityBetweenThemAndMoreThan63StillAColourEach) {
+TEST(DefaultFunction, LabelsHaveNoOpacityBetweenThemAndAColourEach) {
   const auto samples = cube_of([](float x, float, float) { return x < 0.5F ? 1.0 : 9.0; });
   const DefaultField field{.samples = &samples, .is_grid = true, .labels = std::vector<double>{0, 1, 9}};
   const LoadedTransferFunction loaded = default_function(field, options_over(0, 9));
@@ -88,7 +88,7 @@ TEST(DefaultFunction, KnownLabelsHaveNoOpacityBetweenThemAndMoreThan63StillAColo
             DefaultKind::values);
 }
 
-TEST(DefaultFunction, AnotherModalityThanCtIsNotDrawnAsOne) {
+TEST(DefaultFunction, OtherModalitiesAreNotDrawnAsCt) {
   const auto samples = cube_of([](float x, float, float) { return x < 0.5F ? -1000 : 1500.0 * x - 800.5; });
   DefaultField field{.samples = &samples, .is_grid = true, .axes = BodyAxes::lps, .modality = "MR"};
   EXPECT_EQ(default_kind(field, {-1000, 700}), DefaultKind::body);

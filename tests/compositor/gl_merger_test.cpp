@@ -208,7 +208,7 @@ GlSettings fragment(bool half) {
 
 const Stack shallow{{0, 1, 2, 5, 17, 64}};
 
-TEST(GlCompute, ExactIsTheCpusWithinFloatRounding) {
+TEST(GlCompute, ExactMatchesTheCpuWithinFloatRounding) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(exact, emission);
@@ -222,7 +222,7 @@ TEST(GlCompute, ExactIsTheCpusWithinFloatRounding) {
   }
 }
 
-TEST(GlCompute, SampledIsTheCpus) {
+TEST(GlCompute, SampledMatchesTheCpu) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);
@@ -342,7 +342,7 @@ TEST_P(Arrangements, FragmentShadersCompositeOneDeepPixelAmongShallowOnes) {
   }
 }
 
-TEST(GlFragment, SampledIsTheCpusWithAFloatFramebuffer) {
+TEST(GlFragment, SampledMatchesTheCpuWithAFloatFramebuffer) {
   TESSERA_DEVICE_OR_SKIP(device, fragment(false));
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);

@@ -103,7 +103,7 @@ void expect_pixel(const WindowState& state, std::size_t p, const RandomRays::Run
   EXPECT_NEAR(state.transmittance[p], expected.transmittance, tolerance) << "pixel " << p;
 }
 
-TEST(CompositeWindows, PixelsAreThoseOfDoublePrecisionUnderEveryInstructionSet) {
+TEST(CompositeWindows, PixelsMatchDoublePrecisionUnderEveryInstructionSet) {
   for_each_case([](RandomRays& rays, std::uint32_t seed) {
     const Table table(rays);
     WindowState state;
@@ -160,7 +160,7 @@ TEST(CompositeWindows, APixelEndsOnlyWhenTooLittleLightRemains) {
   EXPECT_GT(closed, 100);
 }
 
-TEST(CompositeWindows, RunsAreThoseOfDoublePrecisionUnderEveryInstructionSet) {
+TEST(CompositeWindows, RunsMatchDoublePrecisionUnderEveryInstructionSet) {
   for_each_case([](RandomRays& rays, std::uint32_t seed) {
     const Table table(rays);
     WindowState state;
@@ -187,7 +187,7 @@ TEST(CompositeWindows, RunsAreThoseOfDoublePrecisionUnderEveryInstructionSet) {
   });
 }
 
-TEST(CompositeWindows, RunsEndWhereSegmentsDoNotTouchAndNotBefore) {
+TEST(CompositeWindows, RunsEndExactlyWhereSegmentsDoNotTouch) {
   tessera::tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);
     RandomRays rays(1, 1, 5, false);

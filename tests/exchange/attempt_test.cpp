@@ -48,7 +48,7 @@ TEST(Attempt, SucceedsWhereAllDo) {
   });
 }
 
-TEST(Attempt, FailsOnAllWhereOneIsThroughAlready) {
+TEST(Attempt, FailsOnAllRanksAfterOneHasFinished) {
   run_ranks(2, [](Transport& beneath) {
     EXPECT_THROW(attempt(beneath,
                          [](Transport& transport) {
@@ -59,7 +59,7 @@ TEST(Attempt, FailsOnAllWhereOneIsThroughAlready) {
   });
 }
 
-TEST(Attempt, LeavesTheRunsOwnErrorTheRuns) {
+TEST(Attempt, KeepsTheRunsOwnError) {
   EXPECT_THROW(run_ranks(2,
                          [](Transport& beneath) {
                            attempt(beneath, [&](Transport& transport) {

@@ -92,7 +92,7 @@ Truth composited(const std::vector<Seen>& seen, const std::vector<int>& order, s
   return truth;
 }
 
-TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
+TEST(DirectSend, BandsMatchTheDepthOrderedComposite) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 24; ++trial) {
     const int ranks = 1 + trial % 12;
@@ -164,7 +164,7 @@ TEST(DirectSend, AStoppedRankIsMissingInAllBands) {
     });
 }
 
-TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
+TEST(DirectSend, MessagesOfAnotherImageEndTheRun) {
   const PixelRect area{0, 0, size.width, size.height};
   const std::vector<int> order{0, 1};
   struct Header {

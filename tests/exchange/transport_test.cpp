@@ -42,12 +42,12 @@ TEST(LoopbackTransport, KeepsTheOrderOfTwoRanksOnAChannelAndKeepsChannelsApart) 
   });
 }
 
-TEST(LoopbackTransport, ReturnsWithNothingWhenTheTimeIsUp) {
+TEST(LoopbackTransport, ReturnsNothingAfterTheTimeout) {
   LoopbackNetwork network(1);
   EXPECT_FALSE(network.rank(0).receive(Channel::frames, std::chrono::milliseconds(1)).has_value());
 }
 
-TEST(LoopbackTransport, OneRanksErrorEndsAllThatWaitWithTheSameWords) {
+TEST(LoopbackTransport, OneRanksErrorEndsAllWaitingRanksWithTheSameMessage) {
   std::atomic<int> ended = 0;
   try {
     run_ranks(4, [&](Transport& transport) {

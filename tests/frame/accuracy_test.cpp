@@ -133,7 +133,7 @@ TEST_P(Accuracy, ExactKeepsItsPromise) {
     }
 }
 
-TEST_P(Accuracy, RaysHitTheMeshWhereTheReferenceDoesAndAreAsLongInIt) {
+TEST_P(Accuracy, RaysMatchTheReferencesHitsAndLengths) {
   const scene::TetMesh mesh = GetParam().make();
   const double extinction = 0.25, diagonal = 3.4;
   const TransferFunction haze({{0, {1, 1, 1}, extinction}});

@@ -41,7 +41,7 @@ scene::Camera random_camera(Random& random, const glm::dvec3& centre, double ext
   return camera;
 }
 
-TEST(ClipPicture, IsThatOfRaysCutShort) {
+TEST(ClipPicture, MatchesShortenedRays) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 60);
   double worst = 0;
   std::size_t excused = 0, pixels = 0, empty = 0;
@@ -173,7 +173,7 @@ scene::Grid random_grid(Random& random, std::vector<float>& samples) {
   return grid;
 }
 
-TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
+TEST(ClipPicture, OfVolumesMatchesShortenedRays) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 60);
   double worst = 0;
   std::size_t excused = 0, pixels = 0;

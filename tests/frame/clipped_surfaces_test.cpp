@@ -61,7 +61,7 @@ Clipping random_clipping(Random& random) {
   return c;
 }
 
-TEST(ClippedSurfaces, AreThoseOfRaysCutShort) {
+TEST(ClippedSurfaces, MatchShortenedRays) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 100);
   double worst = 0;
   std::size_t excused = 0, pixels = 0;

@@ -71,7 +71,7 @@ struct Cells {
   std::vector<std::uint32_t> connectivity;
 };
 
-TEST(CurvedParts, AreDividedAsTheWholeIs) {
+TEST(CurvedParts, MatchTheDivisionOfTheWhole) {
   // Steep only at one end: parts differ in range and number of tets.
   const auto field = [](const glm::dvec3& p) { return std::exp(4 * p.x) + std::sin(5 * p.y * p.z); };
   test::SomeCases some(4);

@@ -97,7 +97,7 @@ TEST_P(DeviceRasterizerOn, ExactIsWithinItsPromiseOfMeshesOfAllShapes) {
     }
 }
 
-TEST(DeviceRasterizer, SegmentsAreThoseOfPlanes) {
+TEST(DeviceRasterizer, SegmentsMatchThoseOfPlanes) {
   TESSERA_NEEDS_OSMESA();
   for (std::size_t view = 0; view < views().size(); ++view) {
     GlJobSetup setup = on_device();
@@ -167,7 +167,7 @@ TEST(DeviceRasterizer, RanksInAnyRolesMakeThePictureOfOne) {
   }
 }
 
-TEST(DeviceRasterizer, SamplesAreThoseOfPlanes) {
+TEST(DeviceRasterizer, SamplesMatchThoseOfPlanes) {
   TESSERA_NEEDS_OSMESA();
   for (const bool inside : {false, true}) {
     GlJobSetup setup = on_device();

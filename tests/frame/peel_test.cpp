@@ -115,7 +115,7 @@ std::vector<TransferFunction> functions() {
           TransferFunction({{0.5, {0.9, 0.5, 0.1}, 900}})};
 }
 
-TEST(Peel, LayersOfMeshesAreTheReferences) {
+TEST(Peel, LayersOfMeshesMatchTheReference) {
   const scene::TetMesh points = tests::with_field(datasets::cube(5), waves);
   for (const scene::TetMesh& mesh : {points, datasets::with_cell_data(points), datasets::shells(3, 1, 1)}) {
     const Dataset data = Dataset::of(datasets::arrays_of(mesh));
@@ -127,7 +127,7 @@ TEST(Peel, LayersOfMeshesAreTheReferences) {
   }
 }
 
-TEST(Peel, LayersOfGridsAreTheReferences) {
+TEST(Peel, LayersOfGridsMatchTheReference) {
   test::SomeCases some(3);
   for (const auto association : {Association::point, Association::cell})
     for (const bool rectilinear : {false, true}) {
@@ -142,7 +142,7 @@ TEST(Peel, LayersOfGridsAreTheReferences) {
 }
 
 /// Where extinction is almost zero at a cut, rounding moves the cut.
-TEST(Peel, LayersBeginWhereTheReferencesDo) {
+TEST(Peel, LayersBeginAtTheReferencesDepths) {
   const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 8);
   const View view = view_of(ProjectionKind::perspective);
   const Peel peel{0.6, 4};
@@ -163,7 +163,7 @@ TEST(Peel, LayersBeginWhereTheReferencesDo) {
   expect(volume, reference::GridReference(*StateAccess::of(volume).samples, view.camera, size, function));
 }
 
-TEST(Peel, LayersOfLightThatNothingAbsorbsAreTheReferences) {
+TEST(Peel, LayersOfEmissionOnlyLightMatchTheReference) {
   Settings settings = exact();
   settings.emission = Emission::independent;
   const TransferFunction function({{0, {0.1, 0.2, 0.9}, 0}, {0.4, {0.5, 0, 0}, 0}, {1, {0.2, 0.6, 0.1}, 6}});
@@ -172,7 +172,7 @@ TEST(Peel, LayersOfLightThatNothingAbsorbsAreTheReferences) {
     expect_the_reference(data, settings, view_of(ProjectionKind::perspective), function, 0.5, 4);
 }
 
-TEST(Peel, ShadedLayersAreTheReferences) {
+TEST(Peel, ShadedLayersMatchTheReference) {
   Settings settings = exact();
   settings.mesh.shading = settings.grid.shading = Shading{};
   const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 4);

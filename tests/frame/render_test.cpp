@@ -270,7 +270,7 @@ TEST(Render, ScalesAndOffsetsOfTheSceneDoNotChangeTheImage) {
   EXPECT_LT(distance(1, {7e6, -3e6, 2e6}), 1e-6);
 }
 
-TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
+TEST(Render, ADistantEyeHoldsNoMoreSegments) {
   const scene::TetMesh mesh = datasets::cube(24, 0.2);
   const auto alive = [&](double distance) {
     Camera camera;

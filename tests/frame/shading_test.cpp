@@ -132,7 +132,7 @@ RandomCase random_case(Random& random) {
   return c;
 }
 
-TEST(MeshShading, OfRandomMeshesIsTheReferences) { frame::expect_random_cases_right(22, 100, random_case); }
+TEST(MeshShading, OfRandomMeshesMatchesTheReference) { frame::expect_random_cases_right(22, 100, random_case); }
 
 double difference(const Image& a, const Image& b) {
   double most = 0;
@@ -140,7 +140,7 @@ double difference(const Image& a, const Image& b) {
   return most;
 }
 
-TEST(MeshShading, OfSeveralRanksIsThatOfOne) {
+TEST(MeshShading, OfSeveralRanksMatchesOne) {
   const scene::TetMesh mesh = datasets::cube(7);
   const TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0.2}, {1, {1, 0.4, 0.2}, 2}});
   for (const auto kind : {ProjectionKind::orthographic, ProjectionKind::perspective}) {

@@ -176,7 +176,7 @@ TEST_F(SharedVolume, WithoutRoomForItEndsTheRunForAllWithARemedy) {
   EXPECT_EQ(opened(file, 1).size(), 1u);
 }
 
-TEST(BrickMemory, IsWhatTheRestOfTheProcessLeaves) {
+TEST(BrickMemory, IsTheBudgetMinusOtherMemory) {
   constexpr std::uint64_t mib = 1 << 20, brick = 33 * 33 * 33;
   const OtherMemory rest{200 * mib, 30 * mib, {512, 512}, 1};
   const std::uint64_t left = brick_memory(1024 * mib, rest, brick);

@@ -67,7 +67,7 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
   }
 }
 
-TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
+TEST(SurfacesBetweenRanks, MatchThoseOfOneProcess) {
   scene::TetMesh mesh = datasets::cube(8, 0.2);
   // Values of vertices among them: the surfaces coincide with faces shared by ranks.
   for (std::size_t i = 0; i < mesh.scalars.size(); i += 3) mesh.scalars[i] = std::round(mesh.scalars[i] * 8) / 8;
@@ -100,7 +100,7 @@ scene::Surfaces faces() {
   return surfaces;
 }
 
-TEST(SurfacesBetweenRanks, OfFacesAreThoseOfOneProcess) {
+TEST(SurfacesBetweenRanks, OfFacesMatchThoseOfOneProcess) {
   const scene::TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0}, {1, {1, 0.4, 0.2}, 2}});
   DistributedSettings settings;
   settings.render.integrator.kind = scene::IntegratorKind::exact;

@@ -78,7 +78,7 @@ TEST(IsoSurface, IsBetweenTheDataInFrontAndBehind) {
   }
 }
 
-TEST(IsoSurface, AtTheValueOfVerticesOfFacesAndOfWholeCellsIsMetOnce) {
+TEST(IsoSurface, AtTheValueOfVerticesFacesAndWholeCellsIsHitOnce) {
   const scene::ImageSize size{33, 33};
   Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1), 0.5}};

@@ -84,7 +84,7 @@ TEST(SegmentIntegrator, HomogeneousMatterFollowsBeerAndLambert) {
   }
 }
 
-TEST(SegmentIntegrator, ALinearRampHasItsClosedForm) {
+TEST(SegmentIntegrator, ALinearRampMatchesItsClosedForm) {
   // kappa = k u, c = u along a unit segment: int k u^2 exp(-k u^2 / 2) du, by parts -exp(-k/2) + sqrt(pi/2k)
   // erf(sqrt(k/2)).
   for (const double k : {1e-3, 0.04, 0.09, 0.7, 1.9, 2.1, 10.0, 1e4}) {

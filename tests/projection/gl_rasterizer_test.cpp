@@ -216,7 +216,7 @@ TEST_P(GlRasterizerOn, KeepsTheTieRuleInPerspective) {
     expect_like_planes(*context_, Scene(datasets::cube(6, 0), camera, size));
 }
 
-TEST_P(GlRasterizerOn, CellsWithoutVolumeAreThoseOfPlanes) {
+TEST_P(GlRasterizerOn, CellsWithoutVolumeMatchThoseOfPlanes) {
   const scene::ImageSize size{32, 32};
   for (const bool flat : {true, false}) {
     scene::TetMesh mesh = datasets::cube(3, 0.2);
@@ -238,7 +238,7 @@ TEST_P(GlRasterizerOn, CellsWithoutVolumeAreThoseOfPlanes) {
   }
 }
 
-TEST_P(GlRasterizerOn, CellsFarSmallerThanPixelsAndSliversAreThoseOfPlanes) {
+TEST_P(GlRasterizerOn, TinyCellsAndSliversMatchThoseOfPlanes) {
   const scene::ImageSize size{32, 32};
   for (const scene::TetMesh& mesh : {datasets::graded(6, 1e12), datasets::slivers(4, 1e6), datasets::cube(20, 0.2)})
     for (const scene::Camera& camera : {oblique(), perspective({1.2, 0.9, 1.4}, 60)})

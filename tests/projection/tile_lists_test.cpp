@@ -231,7 +231,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
   }
 }
 
-TEST(TileLists, AreThoseOfDoublePrecisionOnEveryInstructionSet) {
+TEST(TileLists, MatchDoublePrecisionOnEveryInstructionSet) {
   const auto check = [](const std::string& where) {
     scene::TetMesh jittered = datasets::cube(7, 0.2);
     scene::TetMesh on_knots = datasets::regular_split(8, 8, 8, glm::dvec3(0.25), glm::dvec3(-1));

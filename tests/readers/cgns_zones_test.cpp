@@ -265,7 +265,7 @@ TEST(CgnsZones, CellsAreInTheOrderOfTheirNumbersWhereverFacesAre) {
   }
 }
 
-TEST(CgnsZones, MoreFacesThanCellsNumberedFirstAreNotDamage) {
+TEST(CgnsZones, AcceptsMoreFacesThanCellsNumberedFirst) {
   const test::TemporaryFolder folder;
   const Row row(1);
   CgnsWriter file(folder / "a.cgns");

@@ -90,7 +90,7 @@ TEST_F(DicomFrameFiles, HaveScalesOfTheirOwn) {
   EXPECT_EQ(open(shared).range, (scene::ValueRange{-1000, 2 * 111 - 1000, 0}));
 }
 
-TEST_F(DicomFrameFiles, OfOnePlaceAreTimeSteps) {
+TEST_F(DicomFrameFiles, AtOnePositionAreTimeSteps) {
   // By their temporal positions, in the reverse order of the frames.
   DicomFrames file = frames_at({0, 1, 2, 0, 1, 2});
   for (std::size_t f = 0; f < 6; ++f)
@@ -114,7 +114,7 @@ TEST_F(DicomFrameFiles, OfOnePlaceAreTimeSteps) {
   EXPECT_EQ(open(between).range, (scene::ValueRange{7, 7, 0}));
 }
 
-TEST_F(DicomFrameFiles, AtSeveralTimesHaveTheseInSecondsFromTheFirst) {
+TEST_F(DicomFrameFiles, HaveTheirTimesInSecondsFromTheFirst) {
   const auto times = [&](const std::vector<std::string>& groups) {
     DicomFrames file = frames_at({0, 1, 0, 1, 0, 1});
     for (std::size_t f = 0; f < 6; ++f) file.each[f] += groups[f / 2];

@@ -107,7 +107,7 @@ TEST_F(DicomSegments, OfOneBitAreLabelsOfOneVolumeWhateverTheirOrder) {
   }
 }
 
-TEST_F(DicomSegments, OfLabelsAreNoTimeSteps) {
+TEST_F(DicomSegments, OfLabelsAreNotTimeSteps) {
   const auto file = folder.write("a.dcm", test::dicom_file(segmentation({{1, 0, 2, 7}, {1, 1, 0, 9}, {2, 1, 9, 12}})));
   EXPECT_EQ(open_volume(file, {.time_step = 0}).range, (scene::ValueRange{0, 2, 0}));
   expect_no_volume(file, "there is no time step 1", {.time_step = 1});
@@ -119,7 +119,7 @@ TEST_F(DicomSegments, ShowTheLastOfThoseThatOverlapWithANote) {
   EXPECT_TRUE(has_note(volume, "2 samples are in several segments"));
 }
 
-TEST_F(DicomSegments, AreNothingWhereTheirFramesAreLeftOut) {
+TEST_F(DicomSegments, AreZeroWhereFramesAreOmitted) {
   // Segment 1 is at places 0 and 1, segment 3 at place 4.
   const std::vector<Frame> frames = {{1, 0, 2, 7}, {1, 1, 0, 9}, {3, 4, 1, 4}};
   const VolumeFile volume = open(segmentation(frames));

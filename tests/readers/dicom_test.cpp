@@ -114,7 +114,7 @@ class Dicom : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
+TEST_F(Dicom, ADirectoryOfSlicesIsOneVolumeOrderedByPosition) {
   // Names and numbers have another order than the positions.
   const double z[] = {5, 3, 7};
   for (int k = 0; k < 3; ++k)
@@ -148,7 +148,7 @@ TEST_F(Dicom, IsRefusedByNameIfItIsDeflated) {
                      "0.dcm: its data set is deflated, which is not read; dcmtk's `dcmconv +te` writes it plainly");
 }
 
-TEST_F(Dicom, WithoutPlacesAreAsFarApartAsTheyAreThick) {
+TEST_F(Dicom, WithoutPositionsAreSpacedByTheirThickness) {
   for (int k = 0; k < 3; ++k)
     write(fmt::format("{}.dcm", k), {.number = 3 - k, .is_placed = false, .samples = twelve(100 * (2 - k))});
   const VolumeFile volume = open_volume(folder.path());
@@ -193,7 +193,7 @@ TEST_F(Dicom, ReportsAndKeepsGapsAndShearsTiltedStacks) {
   EXPECT_TRUE(has_note(tilted, "by 45.0 degrees"));
 }
 
-TEST_F(Dicom, SlicesScaleEachByItsOwnHeader) {
+TEST_F(Dicom, EachSliceIsScaledByItsOwnHeader) {
   for (int k = 0; k < 2; ++k) write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .slope = 0.5 + k, .samples = twelve(1)});
   const VolumeFile volume = open_volume(folder.path());
   const std::vector<double> samples = all_samples(*volume.source);
@@ -203,7 +203,7 @@ TEST_F(Dicom, SlicesScaleEachByItsOwnHeader) {
   EXPECT_TRUE(has_note(volume, "scales of their own"));
 }
 
-TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps) {
+TEST_F(Dicom, SlicesAtOnePositionAreTimeSteps) {
   for (int k = 0; k < 6; ++k)
     write(fmt::format("{}.dcm", k),
           {.z = k < 3 ? 0.0 : 1.0, .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});

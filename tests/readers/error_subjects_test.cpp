@@ -52,7 +52,7 @@ TEST(ErrorSubjects, AreTheFilesThatAreWritten) {
   expect_subject(folder.path(), [&] { system::AtomicFile file(folder.path()); });
 }
 
-TEST(ErrorSubjects, AreTheSameWhereAFolderIsRemovedInMidRun) {
+TEST(ErrorSubjects, AreTheSameWhenADirectoryIsRemovedDuringTheRun) {
   const test::TemporaryFolder folder;
   const auto target = folder / odd / "a.png";
   try {

@@ -82,7 +82,7 @@ TEST(Helper, InheritsNoFileNoSignalsAndNoRank) {
   EXPECT_EQ(files, 4);
 }
 
-TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
+TEST(Helper, ReportsItsCrashInOneLineAboutTheFileEveryTime) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("m.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false)));
   const struct {
@@ -105,7 +105,7 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
   }
 }
 
-TEST(Helper, IsEndedWhereItWaitsForAPipe) {
+TEST(Helper, IsEndedWhenItWaitsForAPipe) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto cube = folder / "case", boundary = cube / "constant/polyMesh/boundary";
@@ -239,7 +239,7 @@ TEST(Helper, ADescriptionIsReturnedUnchanged) {
     EXPECT_ANY_THROW(contents_of(std::span(bytes).first(cut))) << cut;
 }
 
-TEST(Helper, AWholeLargerThanItsPiecesIsRefusedBeforeMemoryIsAskedFor) {
+TEST(Helper, RefusesAWholeLargerThanItsPiecesBeforeAllocating) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(open_volume(folder.write("right.vti", image_text(4, "0 3 0 3 0 3"))).range.high, 6);
   for (const char* extent : {"0 4 0 3 0 3", "-1 3 0 3 0 3", "0 999999 0 3 0 3", "0 999 0 999 0 999"}) {
@@ -250,7 +250,7 @@ TEST(Helper, AWholeLargerThanItsPiecesIsRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
-TEST(Helper, ASmallFileThatPromisesMuchCostsLittle) {
+TEST(Helper, ASmallFileWithLargeCountsUsesLittleMemory) {
   const test::TemporaryFolder folder;
   std::string text = testing::vtu_text(testing::mixed_mesh(2, 1, false));
   const std::size_t at = text.find("NumberOfPoints=\"") + 16;

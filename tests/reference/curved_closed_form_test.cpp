@@ -318,7 +318,7 @@ TEST(CurvedReference, NeighboursShareACurvedFaceWithNoGapAndNoOverlap) {
   EXPECT_GT(several, 8);
 }
 
-TEST(CurvedReference, OfStraightTetsIsThatOfTets) {
+TEST(CurvedReference, OfStraightTetsMatchesTheTetReference) {
   const Field field = [](const glm::dvec3& p) { return p.x + 2 * p.y - 0.5 * p.z; };
   const TransferFunction transfer_function(
       {{-0.2, {1, 0, 0}, 0.1}, {0.4, {0, 1, 0}, 4}, {0.4, {0, 0, 1}, 0}, {1, {1, 1, 0}, 2}, {2, {0, 0, 1}, 0}});

@@ -79,7 +79,7 @@ TEST(CurvedJudge, AnImageOfCurvedCellsRoundedToFloatPasses) {
   EXPECT_LE(judgement.max_error, 6e-8);  // half a unit in float's last place below two
 }
 
-TEST(CurvedJudge, ARoundSilhouetteIsExcusedWithinAThousandthOfAPixelAndNotFarther) {
+TEST(CurvedJudge, ExcusesARoundSilhouetteOnlyWithinAThousandthOfAPixel) {
   const RoundCell cell;
   const CurvedReference reference = cell.reference();
   // Where a row leaves the cell: between a ray that meets it and one that does not.

@@ -125,7 +125,7 @@ const std::vector<std::vector<Knot>>& transfer_functions() {
   return functions;
 }
 
-TEST(CurvedIntegral, OfCubicsIsThatOfGrids) {
+TEST(CurvedIntegral, OfCubicsMatchesThatOfGrids) {
   constexpr double error = 2e-12;  // the accuracy of both
   for (const auto& knots : transfer_functions())
     for (const Emission emission : {Emission::absorption, Emission::independent}) {
@@ -155,7 +155,7 @@ TEST(CurvedIntegral, OfAConstantOnAStepTakesTheUpperKnot) {
   EXPECT_EQ(integral.color()[0], 0);
 }
 
-TEST(CurvedIntegral, OfARationalScalarIsItsClosedForm) {
+TEST(CurvedIntegral, OfARationalScalarMatchesItsClosedForm) {
   // kappa = 1 / (1 + z): T = 1 / (1 + z), and light with the colour kappa: (1 - 1 / (1 + z)^2) / 2.
   const std::vector<Knot> knots{{0, {0, 0, 0}, 0}, {1, {1, 1, 1}, 1}};
   CurvedIntegral integral(knots, Emission::absorption);

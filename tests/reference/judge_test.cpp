@@ -84,7 +84,7 @@ TEST(Judge, NotANumberAndInfinityAreInfinitelyWrong) {
   }
 }
 
-TEST(Judge, TheOtherSideOfAFaceIsExcusedOnlyWithinAThousandthPixelAndOnlyRarely) {
+TEST(Judge, ExcusesTheOtherSideOfAFaceOnlyNearbyAndRarely) {
   // The pixel column in the window's middle is centred on the face between the materials, up to `away` of a pixel.
   const auto judged = [](double away, int width, int height, int wrong_pixels) {
     const double pixel = 1.4 / height;
@@ -115,7 +115,7 @@ TEST(Judge, TheOtherSideOfAFaceIsExcusedOnlyWithinAThousandthPixelAndOnlyRarely)
   EXPECT_EQ(too_small.excused, 1u);
 }
 
-TEST(Judge, LooksOnlyAtThePixelsItIsGiven) {
+TEST(Judge, ChecksOnlyTheGivenPixels) {
   const TwoMaterials scene(20, 10, 0.03);
   scene::Image image = scene.image();
   image.rgba[4 * image.index(3, 7)] += 0.5f;

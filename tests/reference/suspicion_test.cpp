@@ -47,7 +47,7 @@ TEST(ChoosePixels, TakesAThirdAtRandomAndTheRestFromTheSuspectsByTurns) {
   for (std::size_t i = 0; i < chosen.size(); ++i) EXPECT_EQ(chosen[i].at, again[i].at);
 }
 
-TEST(ChoosePixels, TakesMoreAtRandomWhereThereAreFewSuspectsAndAllPixelsOfASmallPicture) {
+TEST(ChoosePixels, TakesMoreRandomPixelsForFewSuspectsAndAllOfASmallImage) {
   Suspects suspects;
   suspects[static_cast<std::size_t>(Suspicion::step)] = {{5, 5}, {5, 5}, {6, 5}};
   const std::vector<ChosenPixel> chosen = choose_pixels(size, 300, suspects);
@@ -62,7 +62,7 @@ TEST(ChoosePixels, TakesMoreAtRandomWhereThereAreFewSuspectsAndAllPixelsOfASmall
   EXPECT_TRUE(choose_pixels(size, 0, suspects).empty());
 }
 
-TEST(Ranked, HasTheMostSuspiciousFirstSpreadOverThePictureAndDrawsOfTheOthers) {
+TEST(Ranked, StartsWithTheMostSuspiciousPixelsSpreadOverTheImage) {
   SuspicionMap map = nothing_suspicious();
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) map[at(x, y)] = 1 + 0.001f * static_cast<float>(x);  // a large suspicious corner
@@ -201,7 +201,7 @@ class HalfPlane final : public RayReference {
   double x_;
 };
 
-TEST(Verification, GrantsExcusesToSuspectsButNoMoreThanASampleMayHoldToRandomPixels) {
+TEST(Verification, ExcusesSuspectsButLimitsExcusesOfRandomPixels) {
   const HalfPlane reference(20.5 + 1.0 / 3000);  // the centres of column 20 see nothing, those of column 21 everything
   scene::Image image(size);
   for (int y = 0; y < size.height; ++y)

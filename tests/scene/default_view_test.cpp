@@ -110,7 +110,7 @@ TEST(DefaultView, EveryCornerIsInThePictureAndZoomEnlarges) {
   EXPECT_DOUBLE_EQ(view_of_box(box, {200, 100}, zoomed).parallel_scale * 4, camera.parallel_scale);
 }
 
-TEST(DefaultView, ACallersCameraKeepsItsBitsUnlessSomethingIsAsked) {
+TEST(DefaultView, ACallersCameraIsUnchangedWithoutRequests) {
   Camera camera;
   camera.position = {1, 2, 3}, camera.view_up = {0, 1, 1e-3}, camera.parallel_scale = 0.7;
   EXPECT_EQ(adjusted_view(camera, box_of(1, 1, 1), square, {}), camera);

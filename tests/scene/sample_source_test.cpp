@@ -79,7 +79,7 @@ TEST(SampleSource, RangeLeavesBlanksOutAndMeansValuesNotSamples) {
   EXPECT_TRUE(value_range(*MemorySource::of(grid, std::vector<float>(24, std::nanf("")))).empty());
 }
 
-TEST(ThresholdSource, BlanksSamplesWhoseValuesAreOutsideOfTheRangeAndKeepsTheOthersAsTheyAre) {
+TEST(ThresholdSource, BlanksSamplesOutsideTheRangeAndKeepsOthers) {
   Grid grid = grid_of({4, 3, 5});
   grid.scale = -0.5;
   grid.shift = 20;                                                                  // values from 20 down to -9.5

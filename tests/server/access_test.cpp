@@ -15,7 +15,7 @@ Access at_loopback(std::vector<std::string> allowed = {}) { return {token, "127.
 /// Credentials of a normal request with the token.
 Credentials good() { return {"127.0.0.1:8080", "", "", "", "token=0123456789abcdef0123456789abcdef"}; }
 
-TEST(Access, TakesTheTokenFromQueryHeaderOrSubprotocolAndNothingElse) {
+TEST(Access, AcceptsTheTokenOnlyFromQueryHeaderOrSubprotocol) {
   const Access access = at_loopback();
   EXPECT_FALSE(access.refusal(good()));
   Credentials c = good();

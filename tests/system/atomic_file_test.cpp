@@ -66,7 +66,7 @@ TEST(AtomicFile, HasNoOtherNameBeforeItsOwnUnlessItReplacesAFile) {
 }
 
 // In a separate process, which cannot write outputs afterwards.
-TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutputs) {
+TEST(AtomicFile, IsRemovedByItsTemporaryNameWhenOutputsAreAbandoned) {
   const TemporaryFolder folder;
   const pid_t child = fork();
   if (child == 0) {
@@ -120,7 +120,7 @@ TEST(AtomicFile, KeepsThePermissionsOfTheFileThatItReplaces) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), own);
 }
 
-TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
+TEST(AtomicFile, ReplacesAnOldFileCompletelyOrNotAtAll) {
   const TemporaryFolder folder;
   folder.write("out", "old");
   {
@@ -165,7 +165,7 @@ TEST(AtomicFile, SeekOverwrites) {
   EXPECT_EQ(contents(folder / "out"), "hullo");
 }
 
-TEST(AtomicFile, HasTheRightsOfAnyNewFile) {
+TEST(AtomicFile, HasThePermissionsOfANewFile) {
   const TemporaryFolder folder;
   const mode_t mask = ::umask(0022);
   system::AtomicFile file(folder / "out");
@@ -205,7 +205,7 @@ TEST(AtomicFile, RefusesWhereNothingCanBeWritten) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
 }
 
-TEST(AtomicFile, RefusesAFolderWithoutTheRightToWrite) {
+TEST(AtomicFile, RefusesADirectoryWithoutWritePermission) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TemporaryFolder folder;
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);

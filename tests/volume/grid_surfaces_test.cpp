@@ -113,7 +113,7 @@ TEST(GridSurface, IsBetweenTheDataInFrontAndBehind) {
 }
 
 /// Rays in planes of the lattice and between them; a value of whole layers of samples, and of all samples of some.
-TEST(GridSurface, AtTheValueOfSamplesIsMetOnce) {
+TEST(GridSurface, AtTheValueOfSamplesIsHitOnce) {
   const scene::ImageSize small{33, 33};  // pixels of 1 / 11: centres in lattice planes, and not
   Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1), 0.5}};
@@ -136,7 +136,7 @@ TEST(GridSurface, AtTheValueOfSamplesIsMetOnce) {
 }
 
 /// More values than a vector has lanes.
-TEST(GridSurface, ManyInOneVoxelAreAllMetInTheirOrder) {
+TEST(GridSurface, ManyInOneVoxelAreAllHitInOrder) {
   constexpr int count = 40;
   constexpr double opacity = 0.02;
   Surfaces surfaces;

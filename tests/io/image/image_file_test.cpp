@@ -257,7 +257,7 @@ TEST(ImageFile, TiffHoldsWhatPngHolds) {
     }
 }
 
-TEST(ImageFile, APngInMemoryIsTheFile) {
+TEST(ImageFile, APngInMemoryEqualsTheFile) {
   const TemporaryFolder folder;
   write_image(picture(), folder / "a.png", {});
   const std::vector<std::byte> bytes = checked_png_bytes(picture(), {});

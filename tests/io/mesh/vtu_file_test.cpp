@@ -500,7 +500,7 @@ TEST_F(Vtu, LeavesUnknownContentToVtk) {
   left("Name=\"p\" NumberOfComponents=\"1\"", "Name=\"p\" NumberOfComponents=\"-1\"");
 }
 
-TEST_F(Vtu, AByteOrderMarkIsPassedOverAndUtf16IsNamed) {
+TEST_F(Vtu, SkipsAByteOrderMarkAndReportsUtf16) {
   const std::string text = vtu_file_text({}, {sample_piece()});
   const std::size_t cells = read_mesh(folder.write("plain.vtu", text)).counts.cells_read;
   EXPECT_EQ(read_mesh(folder.write("mark.vtu", "\xEF\xBB\xBF" + text)).counts.cells_read, cells);

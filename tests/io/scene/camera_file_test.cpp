@@ -101,7 +101,7 @@ TEST(CameraFile, APathIsAListOfViews) {
   expect_bad_input([&] { parse_json_cameras("[]", "path.json"); }, {"empty list"});
 }
 
-TEST(CameraFile, RefusesTextThatMakesNoViewNamingTheLine) {
+TEST(CameraFile, RefusesTextWithoutAViewNamingTheLine) {
   const std::string good = "position 0 0 5\nfocal_point 0 0 0\n";
   const struct {
     std::string text;
@@ -206,7 +206,7 @@ TEST(CameraFile, RefusesBrokenPvcc) {
   }
 }
 
-TEST(CameraFile, RefusesAMissingFileAndAFolder) {
+TEST(CameraFile, RefusesAMissingFileAndADirectory) {
   const test::TemporaryFolder folder;
   expect_bad_input([&] { read_cameras(folder / "none.json"); }, {"none.json: there is no such file"});
   expect_bad_input([&] { read_cameras(folder.path()); }, {"is a directory"});

@@ -185,7 +185,7 @@ TEST_F(VolumeFiles, NrrdDetachedSkippedAndBigEndianSamplesAreRead) {
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(5, 0, 0));
 }
 
-TEST_F(VolumeFiles, NrrdSamplesMayBeTextHexadecimalWideOrBehindLinesAndCompressedBytes) {
+TEST_F(VolumeFiles, NrrdSamplesMayBeTextHexadecimalWideOrAfterSkippedBytes) {
   const auto head = [](const std::string& type, const std::string& encoding, const std::string& more = "") {
     return "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: " + encoding + "\n" +
            more + "\n";
@@ -425,7 +425,7 @@ TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
   expect_refused(folder.write("other.pvtr", with("other.vtr")), "array 'c' is missing");
 }
 
-TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {
+TEST_F(VolumeFiles, FallingRectilinearCoordinatesAreReversed) {
   TESSERA_VTK_OR_SKIP();
   const auto file = folder.write("a.vtk",
                                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
@@ -533,7 +533,7 @@ TEST_F(VolumeFiles, ABrickFileKeepsGeometryScaleAndRangesAndReadsAnyBox) {
   }
 }
 
-TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularGrid) {
+TEST_F(VolumeFiles, EvenRectilinearCoordinatesMakeARegularGridDespiteRounding) {
   TESSERA_VTK_OR_SKIP();
   const auto geometry = [&](const std::string& type, const std::string& axis) {
     const std::string array = "<DataArray type=\"" + type + "\" format=\"ascii\">" + axis + "</DataArray>";
