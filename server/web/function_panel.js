@@ -95,7 +95,7 @@ export class FunctionPanel {
     });
     this.strength_text = typed("Overall opacity, a factor", (text) => this.#type_strength(text), { class: "short" });
     this.distance = typed("", (text) => this.#type_distance(text), { title: "Unit distance: the world length over which an opacity holds" });
-    this.bar = checkbox("Colour bar", (on) => this.#set_bar(on), "Drawn in the picture, and in saved ones");
+    this.bar = checkbox("Colour bar", (on) => this.#set_bar(on), "Drawn in the image, and in saved ones");
     this.bar_title = typed("", (text) => this.page.history.change({ "color-bar-title": text.trim() || this.page.unset("color-bar-title") }),
       { inputmode: "text", placeholder: "the field's name", title: "{field}, {time}, {file}, {min} and {max} are filled in" });
     this.bar_row = row("Bar's title", this.bar_title);

@@ -72,7 +72,7 @@ function section(title, body, open) {
 const probe_section = section("Probe", probe.element, false);
 by_id("panel").append(
   data_panel.field_row, section("Colour and opacity", functions.element, true), section("Data", data_panel.element, true), section("View", view_panel.element, false),
-  section("Picture and film", picture_panel.element, false), probe_section, section("Information", information.element, false));
+  section("Image and film", picture_panel.element, false), probe_section, section("Information", information.element, false));
 
 // Tools.
 
@@ -80,7 +80,7 @@ const undo = icon_button("undo", "Undo (Ctrl Z)", () => history.undo(), { disabl
 const redo = icon_button("redo", "Redo (Ctrl Shift Z)", () => history.redo(), { disabled: true });
 const panel_toggle = icon_button("panel", "Settings", () => show_panel(document.body.classList.contains("panel-closed")), { id: "panel-toggle", "aria-controls": "panel" });
 const picture_tools = [icon_button("link", "Copy link (L)", () => void picture_panel.copy_link()), icon_button("command", "Copy command (C)", () => void picture_panel.copy_command()),
-  icon_button("save", "Save the picture", () => void picture_panel.save())];
+  icon_button("save", "Save the image", () => void picture_panel.save())];
 by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keyboard shortcuts (?)", show_help), panel_toggle);
 for (const tool of picture_tools) tool.disabled = true;
 
@@ -167,7 +167,7 @@ async function show_frame(header, image) {
   try {
     painted = await view.paint(header, image);
   } catch {
-    messages.complain("The browser cannot show the picture that the server sent; reload the page.", { about: "frame" });
+    messages.complain("The browser cannot show the image that the server sent; reload the page.", { about: "frame" });
   }
   connection.send({ type: "ack", frame: header.frame });
   sender.answered(header.number);
@@ -195,7 +195,7 @@ function show_error(message) {
   by_id("frame-progress").hidden = true;
   const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load({}) };
   messages.complain(message.error, { about: "state", action });
-  status.outdated("an older picture: see the message");
+  status.outdated("an older image: see the message");
   document.body.dataset.shown = `${message.number ?? 0} error`;
 }
 
@@ -233,7 +233,7 @@ function show_connection(state, detail) {
     end_reading();
     const again = element("span");
     const text = state === "refused" ? detail.sentence ?? "The server refuses this page."
-      : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : detail.sentence || "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
+      : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : detail.sentence || "The connection to the server is lost; the image stays, and changes are shown once it is back.";
     banner.replaceChildren(element("span", {}, text), again, ...(state === "refused" ? refused_controls(text) : [button("Try now", () => connection.retry())]));
     banner.hidden = false;
     if (detail.retry_at !== undefined) {
@@ -299,7 +299,7 @@ async function load_data() {
   try {
     const data = await page.ask_data();
     end_reading();
-    if (start_error) messages.complain(`${start_error} The picture is made without that.`, { about: "data" });
+    if (start_error) messages.complain(`${start_error} The image is made without that.`, { about: "data" });
     else messages.clear("data");
     begin(data);
   } catch (error) {
@@ -378,7 +378,7 @@ let turning = false;
 history.listen(({ state, before, moving }) => {
   if (!page.ready) return;
   turning = state.camera !== before.camera;
-  status.outdated(connection.is_open ? undefined : "an older picture: no connection");
+  status.outdated(connection.is_open ? undefined : "an older image: no connection");
   if (data_words.some((word) => !same(state[word], before[word]))) probe.forget();
   const size = /^(\d+)x(\d+)$/.exec(state.size ?? "");
   if (state.size !== before.size || (size === null) !== (view.fixed === undefined)) view.fix_size(size ? { width: Number(size[1]), height: Number(size[2]) } : undefined);

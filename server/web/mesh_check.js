@@ -26,7 +26,7 @@ export function check_sentence({ clean, overlaps, folded, non_conforming_faces: 
     faces.count > 0 && `${some(faces.count, "face")} that ${faces.count === 1 ? "does" : "do"} not match`,
   ].filter(Boolean);
   const said = parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts[parts.length - 1]}` : parts[0];
-  return `${said}${overlaps.count > 0 || folded.count > 0 ? ": the picture is wrong where cells overlap" : ": the picture is right where they match in space"}.`;
+  return `${said}${overlaps.count > 0 || folded.count > 0 ? ": the image is wrong where cells overlap" : ": the image is right where they match in space"}.`;
 }
 
 /** A row for each kind of finding. @param {Record<string, any>} reply @returns {Row[]} */

@@ -28,7 +28,7 @@ export class PicturePanel {
     this.format = choice("", () => {}, [["png", "PNG"], ["exr", "OpenEXR, linear"], ["jpg", "JPEG"]]);
     this.clear = checkbox("Without background", () => {}, "With alpha, PNG and OpenEXR");
     this.save_button = button("Save", () => void this.save(), { class: "primary" });
-    this.fixed = checkbox("Show at this size", (on) => this.#fix(on), "Otherwise the picture fills the window");
+    this.fixed = checkbox("Show at this size", (on) => this.#fix(on), "Otherwise the image fills the window");
     this.accuracy = typed("", (text) => {
       const bound = parsed_number(text);
       if (!(bound > 0) && text.trim() !== "") return false;
@@ -53,7 +53,7 @@ export class PicturePanel {
       element("div", { class: "checks" }, this.fixed.label),
       row("Accuracy", this.accuracy),
       row("Format", this.format, this.save_button), element("div", { class: "checks" }, this.clear.label),
-      element("div", { class: "buttons" }, button("Copy link", () => void this.copy_link()), button("Copy command", () => void this.copy_command(), { title: "The tessera render command of this picture" })),
+      element("div", { class: "buttons" }, button("Copy link", () => void this.copy_link()), button("Copy command", () => void this.copy_command(), { title: "The tessera render command of this image" })),
       element("div", { class: "heading" }, "Film"), this.no_film, this.film_part);
   }
 
@@ -145,7 +145,7 @@ export class PicturePanel {
 
   async copy_command() {
     const command = await this.page.messages.of(command_of(this.page.full_state()), "command");
-    if (command) await this.#copy(command, "Command copied; it makes exactly this picture.");
+    if (command) await this.#copy(command, "Command copied; it makes exactly this image.");
   }
 
   /** @param {string} text @param {string} sentence */

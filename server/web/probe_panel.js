@@ -26,7 +26,7 @@ export class ProbePanel {
     this.point = undefined;
     this.facts = element("dl", { class: "facts", "aria-live": "polite" });
     this.plot = svg("svg", { class: "profile", viewBox: `0 0 ${plot.width} ${plot.height}`, role: "img", "aria-label": "Value and opacity along the ray" });
-    this.hint = element("p", { class: "hint" }, "Press P or the crosshair, and click on the picture; on a touch screen hold a finger on it. Without a mouse: the button below probes the picture's middle.");
+    this.hint = element("p", { class: "hint" }, "Press P or the crosshair, and click on the image; on a touch screen hold a finger on it. Without a mouse: the button below probes the image's middle.");
     this.actions = element("div", { class: "buttons", hidden: true },
       button("Centre the view here", () => this.point && page.history.change({ camera: centred(page.camera, this.point) })),
       button("Add an iso-surface at this value", () => this.value !== undefined && add_surface(this.value)));

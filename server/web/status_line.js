@@ -21,7 +21,7 @@ export class StatusLine {
     this.size = element("span", { class: "wide" });
     this.time = element("button", { type: "button", class: "plain", "aria-expanded": "false", title: "Where the time went", on_click: () => this.#toggle_stages() });
     this.error = element("span");
-    this.latency = element("span", { class: "wide", title: "From the event to the painted picture" });
+    this.latency = element("span", { class: "wide", title: "From the event to the painted image" });
     this.verify = button("Verify", () => void this.#verify(), { class: "plain", title: "Check 1,000 pixels against the reference" });
     this.verdict = element("span", { class: "verdict", role: "status" });
     this.stages = by_id("stages");
@@ -51,7 +51,7 @@ export class StatusLine {
     } else {
       this.#show_stages();
     }
-    this.latency.textContent = latency === undefined ? "" : `event to picture ${short_time(latency)}`;
+    this.latency.textContent = latency === undefined ? "" : `event to image ${short_time(latency)}`;
     if (header.level === "moving") this.verdict.textContent = "";
   }
 
@@ -94,7 +94,7 @@ export class StatusLine {
         bar.style.width = `${(ms / most) * 100}%`;
         return element("tr", {}, element("th", { scope: "row" }, name.replaceAll("_", " ")), element("td", {}, short_time(ms)), element("td", { class: "bars" }, bar));
       }), this.header.encode_ms !== undefined && element("tr", {}, element("th", { scope: "row" }, "encoding"), element("td", {}, short_time(this.header.encode_ms)), element("td")))),
-      element("p", { class: "hint" }, count > 0 ? `Event to picture over ${count} moving frames: median ${short_time(median)}, 95 % within ${short_time(p95)}.` : "Turn the view to measure the time from event to picture."));
+      element("p", { class: "hint" }, count > 0 ? `Event to image over ${count} moving frames: median ${short_time(median)}, 95 % within ${short_time(p95)}.` : "Turn the view to measure the time from event to image."));
   }
 
   async #verify() {

@@ -39,7 +39,7 @@ export class ViewPanel {
       element("div", { class: "buttons views", role: "group", "aria-label": "Named views" }, ...named,
         button("Fit", () => void page.look("fit"), { title: "All of the data, from the same side (F)" }), button("Default", () => void page.look("default"), { title: "The view that the page began with (R)" })),
       element("div", { class: "buttons" }, icon_button("roll-left", "Roll by 90° to the left", () => turn(-90)), icon_button("roll-right", "Roll by 90° to the right", () => turn(90))),
-      element("div", { class: "heading" }, "In the picture"),
+      element("div", { class: "heading" }, "In the image"),
       row("Axes", this.axes), element("div", { class: "checks" }, this.outline.label, this.scale_bar.label), row("Background", this.background),
       element("details", { class: "inner" }, element("summary", {}, "Camera values"), row("Position", this.numbers.position), row("Focal point", this.numbers.focal_point),
         row("Up", this.numbers.view_up), row("Parallel scale", this.scale)));

@@ -69,9 +69,9 @@ EXCEPTIONS = [
     (r"\b(eye|opaque) beside\b", "names of scenes in docs/RESULTS.md, from bench/stability/scenes.py"),
 ]
 
-# Texts of the server's page: strings that are not parts of code in templates. Images are "pictures" there.
+# Texts of the server's page: strings, without the code in templates.
 PAGE_TOKEN = re.compile(r"(?P<comment>//[^\n]*|/\*.*?\*/)|\"(?:[^\"\\\n]|\\.)*\"|`(?:[^`\\]|\\.)*`", re.DOTALL)
-PAGE_CODE = re.compile(r"\$\{[^{}]*\}|\bpictures?\b", re.IGNORECASE)
+PAGE_CODE = re.compile(r"\$\{[^{}]*\}")
 
 TOKEN = re.compile(
     r"""(?P<comment>//[^\n]*|/\*.*?\*/)

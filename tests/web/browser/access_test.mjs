@@ -218,14 +218,14 @@ test("of a broken file the page says why, its controls are asleep, and it tries 
   assert.deepEqual(page.errors, []);
   assert.deepEqual(await page.evaluate(() => ["panel", "view-tools", "status"].map((id) => document.getElementById(id).inert)), [true, true, true]);
   assert.ok(await page.locator("#axes").isHidden());
-  assert.ok(await page.getByRole("button", { name: "Save the picture" }).isDisabled());
+  assert.ok(await page.getByRole("button", { name: "Save the image" }).isDisabled());
   writeFileSync(broken, readFileSync(file));
   if (await page.getByRole("dialog").isVisible()) await page.keyboard.press("Escape");
   await page.getByRole("button", { name: "Try again" }).click();
   await at_rest(page);
   assert.equal(await alert.count(), 0);
   assert.equal(await page.locator("#panel").evaluate((panel) => panel.inert), false);
-  await page.getByRole("button", { name: "Save the picture" }).waitFor();
+  await page.getByRole("button", { name: "Save the image" }).waitFor();
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -233,7 +233,7 @@ test("of a broken file the page says why, its controls are asleep, and it tries 
 test("a field that the file has not leaves a page where others are chosen", async () => {
   const page = await opened((await start([file, "--field", "nothing", "--outline"]).address).href);
   await at_rest(page);
-  await page.getByRole("alert").filter({ hasText: "nothing" }).filter({ hasText: "The picture is made without that." }).waitFor();
+  await page.getByRole("alert").filter({ hasText: "nothing" }).filter({ hasText: "The image is made without that." }).waitFor();
   const field = page.getByLabel("Field", { exact: true });
   assert.equal(await field.inputValue(), "pressure");
   await field.selectOption("region");
@@ -249,7 +249,7 @@ test("a field that the file has not leaves a page where others are chosen", asyn
 test("so does a cut that leaves nothing", async () => {
   const page = await opened((await start([file, "--field", "pressure", "--threshold", "1e6,2e6", "--outline"]).address).href);
   await at_rest(page);
-  await page.getByRole("alert").filter({ hasText: "The picture is made without that." }).waitFor();
+  await page.getByRole("alert").filter({ hasText: "The image is made without that." }).waitFor();
   assert.equal(await page.getByLabel("Threshold").isChecked(), false);
   assert.equal(await page.getByLabel("Outline").isChecked(), true);
   assert.deepEqual(page.errors, []);

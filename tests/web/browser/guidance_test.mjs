@@ -117,7 +117,7 @@ test("errors and notes name the page's controls", async () => {
 });
 
 test("without ffmpeg no films are offered, and it is said why", async () => {
-  await section("Picture and film").locator("summary").first().click();
+  await section("Image and film").locator("summary").first().click();
   await page.getByText(/^No films are offered: films are made by the program ffmpeg.*apt install ffmpeg/).waitFor({ state: "visible" });
   assert.ok(await page.getByRole("button", { name: "Make film" }).isHidden());
 });

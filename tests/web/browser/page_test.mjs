@@ -356,7 +356,7 @@ test("threshold, box, plane and iso-surface", async () => {
 test("the picture is saved, and is what the copied command makes", async () => {
   await page.evaluate(() => window.tessera.change({ outline: true, axes: "both", "scale-bar": true, "color-bar": true }));
   await at_rest(page);
-  const box = await opened_section("Picture and film");
+  const box = await opened_section("Image and film");
   await box.getByLabel("Width, pixels").fill("333");
   await box.getByLabel("Height, pixels").fill("222");
   const [download] = await Promise.all([page.waitForEvent("download"), box.getByRole("button", { name: "Save", exact: true }).click()]);
@@ -379,7 +379,7 @@ test("the picture is saved, and is what the copied command makes", async () => {
 });
 
 test("films are full orbits, or go along key views", async () => {
-  const box = await opened_section("Picture and film");
+  const box = await opened_section("Image and film");
   await box.getByLabel("Width, pixels").fill("48");
   await box.getByLabel("Height, pixels").fill("32");
   await box.getByLabel("Frames", { exact: true }).fill("5");
@@ -509,7 +509,7 @@ test("a link with an option that there is none of is told, and the default view 
 });
 
 test("all controls have names, and text can be read on its ground", async () => {
-  for (const title of ["Colour and opacity", "Data", "View", "Picture and film", "Probe", "Information"]) await opened_section(title);
+  for (const title of ["Colour and opacity", "Data", "View", "Image and film", "Probe", "Information"]) await opened_section(title);
   for (const scheme of ["light", "dark"]) {
     await page.emulateMedia({ colorScheme: scheme });
     const bad = await page.evaluate(() => {

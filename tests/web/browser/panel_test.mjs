@@ -196,7 +196,7 @@ test("the check of a mesh is a sentence and a table, and its places are looked a
   const information = page.locator("details.section", { has: page.locator('summary:text-is("Information")') });
   await information.evaluate((section) => { section.open = true; });
   await information.getByRole("button", { name: "Check the mesh" }).click();
-  await information.getByText(/^1 overlap in 2 cells.*: the picture is wrong where cells overlap\.$/).waitFor();
+  await information.getByText(/^1 overlap in 2 cells.*: the image is wrong where cells overlap\.$/).waitFor();
   const place = information.getByRole("button", { name: "cells 0 and 1" });
   const line = await place.evaluate((made) => made.closest("td").textContent);
   const at = line.slice("cells 0 and 1 at ".length).split(", ").map(Number);

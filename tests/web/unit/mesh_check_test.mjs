@@ -17,8 +17,8 @@ const broken = {
 test("one sentence says whether the picture is right", () => {
   assert.equal(check_sentence(sound), "The mesh is sound: no cells overlap, fold or fail to match.");
   assert.equal(check_sentence({ ...sound, slivers: broken.slivers }), "The mesh is sound: no cells overlap, fold or fail to match; it has 2 slivers among 3\u202f072 tetrahedra, which are drawn right.");
-  assert.equal(check_sentence(broken), "4\u202f505 overlaps or more in 3\u202f441 cells and 1 face that does not match: the picture is wrong where cells overlap.");
-  assert.equal(check_sentence({ ...sound, clean: false, non_conforming_faces: { count: 180, places: [] } }), "180 faces that do not match: the picture is right where they match in space.");
+  assert.equal(check_sentence(broken), "4\u202f505 overlaps or more in 3\u202f441 cells and 1 face that does not match: the image is wrong where cells overlap.");
+  assert.equal(check_sentence({ ...sound, clean: false, non_conforming_faces: { count: 180, places: [] } }), "180 faces that do not match: the image is right where they match in space.");
 });
 
 test("each finding is a row, with its places", () => {
