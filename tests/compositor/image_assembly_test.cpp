@@ -133,14 +133,14 @@ TEST(ImageAssembly, TilesFromAnyRankInAnyOrderMakeTheImageOnce) {
     }
     job.collect();
 
-    std::map<std::size_t, int> told;  // by the tile's first pixel
+    std::map<std::size_t, int> reported;  // by the tile's first pixel
     std::mutex telling;
     ThreadEach threads;
     AssemblySettings settings = settings_of_grid(deep ? 1 << 24 : 0);
     settings.finished = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
       const std::lock_guard lock(telling);
       EXPECT_EQ(frame, 9u);
-      ++told[expected.index(rect.x0, rect.y0)];
+      ++reported[expected.index(rect.x0, rect.y0)];
       for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x)
           EXPECT_EQ(image.depth[image.index(x, y)], expected.depth[expected.index(x, y)]);
@@ -171,8 +171,8 @@ TEST(ImageAssembly, TilesFromAnyRankInAnyOrderMakeTheImageOnce) {
     EXPECT_EQ(done->image.depth, expected.depth) << "seed " << seed;
     EXPECT_EQ(done->sums.counters.fragments,
               static_cast<std::uint64_t>(10 * compositors + compositors * (compositors - 1) / 2));
-    EXPECT_EQ(told.size(), grid.count());
-    for (const auto& [pixel, times] : told) EXPECT_EQ(times, 1) << pixel;
+    EXPECT_EQ(reported.size(), grid.count());
+    for (const auto& [pixel, times] : reported) EXPECT_EQ(times, 1) << pixel;
     if (!deep) continue;
     ASSERT_EQ(done->deep.begin.size(), reds.size() + 1);
     for (std::size_t p = 0; p < reds.size(); ++p) {
@@ -217,15 +217,15 @@ TEST(ImageAssembly, AStoppedFrameReportsOnlyReceivedTiles) {
     sender.end(end_with(0, 1));
   }
   job.collect();
-  int told = 0;
+  int reported = 0;
   AssemblySettings settings = settings_of_grid();
-  settings.finished = [&](std::uint32_t, const scene::PixelRect&, const scene::Image&) { ++told; };
+  settings.finished = [&](std::uint32_t, const scene::PixelRect&, const scene::Image&) { ++reported; };
   ImageAssembly assembly(1, std::move(settings));
   std::optional<AssembledFrame> done;
   for (const exchange::Message& message : job.sent[0]) done = assembly.accept(message);
   ASSERT_TRUE(done.has_value());
   EXPECT_EQ(done->sums.stopped, 1u);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reported, 1);
 }
 
 /// Whether a message is refused, as Error(system_failure).

@@ -17,17 +17,17 @@ TEST(Bells, WakeTheRankTheyAreRungFor) {
     const auto bells = Bells::hung(transport);
     ASSERT_NE(bells, nullptr);
     EXPECT_TRUE(bells->of_all());
-    const std::uint32_t heard = bells->heard();
+    const std::uint32_t before = bells->heard();
     barrier(transport);
     if (transport.rank() == 0) {
       for (const int rank : {1, 2}) bells->ring(rank);
-      EXPECT_EQ(bells->heard(), heard);  // no wake-up was sent here
+      EXPECT_EQ(bells->heard(), before);  // no wake-up was sent here
       return;
     }
     // A thread that is not woken hangs.
-    while (bells->heard() == heard) bells->wait(heard, std::chrono::hours(1));
-    EXPECT_EQ(bells->heard(), heard + 1);
-    bells->wait(heard, std::chrono::hours(1));  // a wake-up was sent since: returns at once
+    while (bells->heard() == before) bells->wait(before, std::chrono::hours(1));
+    EXPECT_EQ(bells->heard(), before + 1);
+    bells->wait(before, std::chrono::hours(1));  // a wake-up was sent since: returns at once
   });
 }
 
@@ -35,11 +35,11 @@ TEST(Bells, ARankWithoutAWakeUpSleepsForItsWholeTimeout) {
   run_ranks(2, [](Transport& transport) {
     const auto bells = Bells::hung(transport);
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t heard = bells->heard();
+    const std::uint32_t before = bells->heard();
     // A signal may wake it early.
     while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(50))
-      bells->wait(heard, std::chrono::milliseconds(60));
-    EXPECT_EQ(bells->heard(), heard);
+      bells->wait(before, std::chrono::milliseconds(60));
+    EXPECT_EQ(bells->heard(), before);
   });
 }
 

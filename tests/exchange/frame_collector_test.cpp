@@ -20,7 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// One projector's messages of the frame, in order: a begin, parts, an end.
-struct Said {
+struct SentMessage {
   enum class Kind { begin, part, end } kind;
   TilePart part{};
 };
@@ -33,10 +33,10 @@ struct Frame {
         map(24, 2, seed),
         tiles(map.tiles(0)),
         contributes(static_cast<std::size_t>(projectors)),
-        said(static_cast<std::size_t>(projectors)),
+        sent(static_cast<std::size_t>(projectors)),
         collector(projectors, map, 0) {
-    for (std::size_t p = 0; p < said.size(); ++p) {
-      said[p].push_back({Said::Kind::begin});
+    for (std::size_t p = 0; p < sent.size(); ++p) {
+      sent[p].push_back({SentMessage::Kind::begin});
       for (const std::uint32_t tile : tiles) {
         contributes[p].push_back(random() % 3 != 0);
         if (!contributes[p].back()) continue;
@@ -49,10 +49,10 @@ struct Frame {
           part.final_depth = part.last ? infinity : depth;
           part.fragments = ++parts;
           part.records = Bytes(large_parts ? 400 << 10 : 8 * (random() % 3));
-          said[p].push_back({Said::Kind::part, part});
+          sent[p].push_back({SentMessage::Kind::part, part});
         }
       }
-      if (end_goes_to(static_cast<int>(p), 2) == 0) said[p].push_back({Said::Kind::end});
+      if (end_goes_to(static_cast<int>(p), 2) == 0) sent[p].push_back({SentMessage::Kind::end});
     }
   }
 
@@ -68,7 +68,7 @@ struct Frame {
   TileMap map;
   const std::vector<std::uint32_t>& tiles;
   std::vector<std::vector<bool>> contributes;  ///< by projector and index of the tile
-  std::vector<std::deque<Said>> said;
+  std::vector<std::deque<SentMessage>> sent;
   FrameCollector collector;
   std::uint64_t parts = 0;
 };
@@ -81,11 +81,11 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
   std::map<std::uint32_t, double> complete_to;     // depth up to which each tile was at least merged
   std::map<std::uint64_t, std::uint32_t> pending;  // parts with records that were not taken, by their number
   std::map<std::uint32_t, std::size_t> awaited;    // last parts that have not arrived, by tile
-  for (std::size_t p = 0; p < frame.said.size(); ++p)
-    for (const Said& said : frame.said[p])
-      if (said.kind == Said::Kind::part && said.part.last) ++awaited[said.part.tile];
+  for (std::size_t p = 0; p < frame.sent.size(); ++p)
+    for (const SentMessage& sent : frame.sent[p])
+      if (sent.kind == SentMessage::Kind::part && sent.part.last) ++awaited[sent.part.tile];
   std::size_t begins = 0;
-  std::vector<std::uint64_t> owed(frame.said.size()), paid(frame.said.size());
+  std::vector<std::uint64_t> owed(frame.sent.size()), paid(frame.sent.size());
   std::vector<std::uint32_t> finished;
   std::size_t early = 0;
 
@@ -104,7 +104,7 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
       EXPECT_GE(waiting.final_depth, complete_to[tile]);
     }
     complete_to[tile] = waiting.final_depth;
-    EXPECT_EQ(waiting.all, begins == frame.said.size() && awaited[tile] == 0);
+    EXPECT_EQ(waiting.all, begins == frame.sent.size() && awaited[tile] == 0);
     if (!waiting.all) {
       ++early;
       return;
@@ -117,27 +117,27 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
   };
 
   for (;;) {
-    std::vector<std::size_t> speaking;
-    for (std::size_t p = 0; p < frame.said.size(); ++p)
-      if (!frame.said[p].empty()) speaking.push_back(p);
-    if (speaking.empty()) break;
+    std::vector<std::size_t> senders;
+    for (std::size_t p = 0; p < frame.sent.size(); ++p)
+      if (!frame.sent[p].empty()) senders.push_back(p);
+    if (senders.empty()) break;
     EXPECT_FALSE(collector.finished());
-    const std::size_t p = speaking[frame.random() % speaking.size()];
-    Said said = std::move(frame.said[p].front());
-    frame.said[p].pop_front();
-    if (said.kind == Said::Kind::begin) {
+    const std::size_t p = senders[frame.random() % senders.size()];
+    SentMessage sent = std::move(frame.sent[p].front());
+    frame.sent[p].pop_front();
+    if (sent.kind == SentMessage::Kind::begin) {
       ++begins;
       FrameBegin begin{};
       begin.tiles = frame.tiles.size();
       begin.longest_ray = static_cast<double>(p);
       collector.begin(static_cast<int>(p), begin, frame.bits(p));
-      EXPECT_EQ(collector.has_all_begins(), begins == frame.said.size());
-    } else if (said.kind == Said::Kind::part) {
-      const std::uint32_t tile = said.part.tile;
-      const std::uint64_t size = said.part.records.size();
-      if (size > 0) pending.emplace(said.part.fragments, tile);
-      if (said.part.last) --awaited[tile];
-      const double start = collector.add(static_cast<int>(p), std::move(said.part));
+      EXPECT_EQ(collector.has_all_begins(), begins == frame.sent.size());
+    } else if (sent.kind == SentMessage::Kind::part) {
+      const std::uint32_t tile = sent.part.tile;
+      const std::uint64_t size = sent.part.records.size();
+      if (size > 0) pending.emplace(sent.part.fragments, tile);
+      if (sent.part.last) --awaited[tile];
+      const double start = collector.add(static_cast<int>(p), std::move(sent.part));
       collector.owe(static_cast<int>(p), tile, start, size + 1);
       owed[p] += size + 1;
     } else {

@@ -25,12 +25,12 @@ class SimulatedJob {
  public:
   SimulatedJob(int ranks, bool ends_run, std::uint64_t seed, milliseconds delay = milliseconds(20))
       : random_(seed), delay_(delay), stopped_(static_cast<std::size_t>(ranks)), inboxes_(stopped_.size()) {
-    said.resize(stopped_.size());
+    reports.resize(stopped_.size());
     for (int rank = 0; rank < ranks; ++rank)
       ranks_.emplace_back(rank, ranks,
                           StallSettings{timeout, ends_run,
                                         [this, rank](const std::string& words) {
-                                          said[static_cast<std::size_t>(rank)].push_back(words);
+                                          reports[static_cast<std::size_t>(rank)].push_back(words);
                                         }},
                           "process " + std::to_string(1000 + rank), now_);
   }
@@ -43,9 +43,9 @@ class SimulatedJob {
         if (!stopped_[rank]) turn(rank);
   }
 
-  [[nodiscard]] std::vector<std::string> all_said() const {
+  [[nodiscard]] std::vector<std::string> all_reports() const {
     std::vector<std::string> all;
-    for (const auto& of_rank : said) all.insert(all.end(), of_rank.begin(), of_rank.end());
+    for (const auto& of_rank : reports) all.insert(all.end(), of_rank.begin(), of_rank.end());
     return all;
   }
   /// Ranks that would end the run, and the rank that each has lost.
@@ -57,7 +57,7 @@ class SimulatedJob {
   }
   [[nodiscard]] const Heartbeats& rank(int rank) const { return ranks_[static_cast<std::size_t>(rank)]; }
 
-  std::vector<std::vector<std::string>> said;  ///< by rank
+  std::vector<std::vector<std::string>> reports;  ///< by rank
 
  private:
   struct Mail {
@@ -89,7 +89,7 @@ TEST(Heartbeats, ReportsNothingWhileAllRanksRunWithSlowMessages) {
   for (const int delay : {0, 500, 3000, 6000}) {
     SimulatedJob job(4, true, 1, milliseconds(delay));
     job.run(100 * timeout);
-    EXPECT_TRUE(job.all_said().empty()) << delay;
+    EXPECT_TRUE(job.all_reports().empty()) << delay;
     EXPECT_TRUE(job.losses().empty()) << delay;
   }
 }
@@ -99,22 +99,22 @@ TEST(Heartbeats, ReportsAStoppedRankOnceAndItsReturn) {
   job.run(timeout);
   job.stop(2);
   job.run(timeout - milliseconds(1500));
-  EXPECT_TRUE(job.all_said().empty());
+  EXPECT_TRUE(job.all_reports().empty());
   job.run(milliseconds(2000));
-  ASSERT_EQ(job.all_said().size(), 1u);
-  ASSERT_EQ(job.said[0].size(), 1u);
-  EXPECT_EQ(job.said[0][0].find("rank 2 of 4 (process 1002) has been silent for 8"), 0u) << job.said[0][0];
+  ASSERT_EQ(job.all_reports().size(), 1u);
+  ASSERT_EQ(job.reports[0].size(), 1u);
+  EXPECT_EQ(job.reports[0][0].find("rank 2 of 4 (process 1002) has been silent for 8"), 0u) << job.reports[0][0];
   job.stop(2, false);
   job.run(timeout);
-  ASSERT_EQ(job.all_said().size(), 2u);
-  EXPECT_EQ(job.said[0][1].find("rank 2 of 4 (process 1002) is back after 9"), 0u) << job.said[0][1];
+  ASSERT_EQ(job.all_reports().size(), 2u);
+  EXPECT_EQ(job.reports[0][1].find("rank 2 of 4 (process 1002) is back after 9"), 0u) << job.reports[0][1];
 }
 
 TEST(Heartbeats, ALongStallIsReportedAgainAtDoublingIntervals) {
   SimulatedJob job(2, false, 1);
   job.stop(1);
   job.run(35 * timeout);
-  EXPECT_EQ(job.all_said().size(), 6u);  // after 1, 2, 4, 8, 16 and 32 times
+  EXPECT_EQ(job.all_reports().size(), 6u);  // after 1, 2, 4, 8, 16 and 32 times
 }
 
 TEST(Heartbeats, TheLowestRunningRankReportsAStoppedFirstRank) {
@@ -123,8 +123,8 @@ TEST(Heartbeats, TheLowestRunningRankReportsAStoppedFirstRank) {
     job.run(timeout);
     for (int rank = 0; rank <= also_stopped; ++rank) job.stop(rank);
     job.run(timeout + milliseconds(2000));
-    ASSERT_EQ(job.all_said().size(), 1u);
-    const auto& words = job.said[static_cast<std::size_t>(also_stopped) + 1];
+    ASSERT_EQ(job.all_reports().size(), 1u);
+    const auto& words = job.reports[static_cast<std::size_t>(also_stopped) + 1];
     ASSERT_EQ(words.size(), 1u);
     EXPECT_EQ(words[0].find("rank 0 of 5 (process 1000) has been silent"), 0u) << words[0];
   }
@@ -138,7 +138,7 @@ TEST(Heartbeats, OneRankEndsTheRunOnRequest) {
     job.run(timeout + timeout / 2);
     const int judge = stopped == 0 ? 1 : 0;
     EXPECT_EQ(job.losses(), (std::vector<std::array<int, 2>>{{judge, stopped}})) << stopped;
-    EXPECT_TRUE(job.all_said().empty());
+    EXPECT_TRUE(job.all_reports().empty());
     const scene::Error& error = job.rank(judge).lost()->error;
     EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
     EXPECT_NE(std::string(error.what()).find("rank " + std::to_string(stopped) + " of 4"), std::string::npos);
@@ -175,7 +175,7 @@ TEST(Heartbeats, RandomStopsAreNoticedIfTheyAreLongAndOnlyThen) {
     job.run(milliseconds(static_cast<int>(length * 8000)));
     job.stop(stopped, false);
     job.run(2 * timeout);
-    const auto words = job.all_said();
+    const auto words = job.all_reports();
     const std::string name = "rank " + std::to_string(stopped) + " of " + std::to_string(ranks);
     for (const auto& line : words) EXPECT_EQ(line.find(name), 0u) << line << ", seed " << seed;
     if (length < 0.7) {

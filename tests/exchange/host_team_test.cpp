@@ -116,7 +116,7 @@ TEST(HostTeam, ARankThatLeavesAnEpochBlocksNoOtherAndJoinsTheNext) {
 }
 
 TEST(HostTeam, AnErrorOfOneEndsTheOthersWait) {
-  std::atomic<int> told = 0;
+  std::atomic<int> failed = 0;
   EXPECT_THROW(run_ranks(3,
                          [&](Transport& transport) {
                            const auto team = HostTeam::form(transport, true);
@@ -126,16 +126,16 @@ TEST(HostTeam, AnErrorOfOneEndsTheOthersWait) {
                              team->barrier();
                            } catch (const scene::Error& error) {
                              EXPECT_STREQ(error.what(), "piece_1.vtu: is cut short");
-                             ++told;
+                             ++failed;
                              throw;
                            }
                          }),
                scene::Error);
-  EXPECT_EQ(told, 3);
+  EXPECT_EQ(failed, 3);
 }
 
 TEST(HostTeam, MemoryThatTheMachineDoesNotHaveIsAnErrorOfAll) {
-  std::atomic<int> told = 0;
+  std::atomic<int> failed = 0;
   EXPECT_THROW(run_ranks(2,
                          [&](Transport& transport) {
                            const auto team = HostTeam::form(transport, true);
@@ -145,12 +145,12 @@ TEST(HostTeam, MemoryThatTheMachineDoesNotHaveIsAnErrorOfAll) {
                            } catch (const scene::Error& error) {
                              EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
                              EXPECT_NE(std::string(error.what()).find("memory ran out"), std::string::npos);
-                             ++told;
+                             ++failed;
                              throw;
                            }
                          }),
                scene::Error);
-  EXPECT_EQ(told, 2);
+  EXPECT_EQ(failed, 2);
 }
 
 TEST(SharedPages, OfAnotherSizeOrMissingAreRefused) {

@@ -101,7 +101,7 @@ TilePart part_of(std::uint32_t tile, std::size_t part, std::size_t size, bool la
 }
 
 /// A compositor's messages, decoded.
-struct Heard {
+struct Summary {
   std::vector<MessageKind> kinds;
   FrameBegin begin{};
   std::vector<std::uint32_t> begun;  ///< tiles whose bit is set, by index in the compositor's list
@@ -111,31 +111,31 @@ struct Heard {
   std::uint64_t bytes = 0;
 };
 
-Heard heard_of(const std::vector<Bytes>& messages, std::uint32_t frame) {
-  Heard heard;
+Summary summary_of(const std::vector<Bytes>& messages, std::uint32_t frame) {
+  Summary summary;
   for (const Bytes& message : messages) {
     MessageReader reader(message, 0);
     EXPECT_EQ(reader.take<std::uint64_t>(), frame);
-    heard.kinds.push_back(reader.kind());
-    heard.bytes += message.size();
+    summary.kinds.push_back(reader.kind());
+    summary.bytes += message.size();
     if (reader.kind() == MessageKind::begin) {
-      heard.begin = reader.take<FrameBegin>();
-      const auto bits = reader.take_bytes((heard.begin.tiles + 7) / 8);
-      for (std::uint32_t i = 0; i < heard.begin.tiles; ++i)
-        if ((bits[i / 8] >> (i % 8) & std::byte{1}) != std::byte{0}) heard.begun.push_back(i);
+      summary.begin = reader.take<FrameBegin>();
+      const auto bits = reader.take_bytes((summary.begin.tiles + 7) / 8);
+      for (std::uint32_t i = 0; i < summary.begin.tiles; ++i)
+        if ((bits[i / 8] >> (i % 8) & std::byte{1}) != std::byte{0}) summary.begun.push_back(i);
     } else if (reader.kind() == MessageKind::end) {
-      heard.end = reader.take<FrameEnd>();
+      summary.end = reader.take<FrameEnd>();
     } else {
       while (!reader.empty()) {
-        heard.parts.push_back(reader.take<PartHeader>());
-        const auto bytes = reader.take_bytes(heard.parts.back().bytes);
-        auto& records = heard.records[heard.parts.back().tile];
+        summary.parts.push_back(reader.take<PartHeader>());
+        const auto bytes = reader.take_bytes(summary.parts.back().bytes);
+        auto& records = summary.records[summary.parts.back().tile];
         records.insert(records.end(), bytes.begin(), bytes.end());
       }
     }
     reader.finish();
   }
-  return heard;
+  return summary;
 }
 
 TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
@@ -191,19 +191,19 @@ TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
     std::uint64_t bytes = 0, messages = 0;
     for (int c = 0; c < compositors; ++c) {
       const auto& mine = job.received[static_cast<std::size_t>(c)];
-      const Heard heard = heard_of(mine, frame);
-      const bool is_told = c == end_goes_to(job.settings.projector, compositors);
-      ASSERT_GE(heard.kinds.size(), is_told ? 2u : 1u);
-      EXPECT_EQ(heard.kinds.front(), MessageKind::begin);
-      EXPECT_EQ(heard.kinds.back() == MessageKind::end, is_told);
-      EXPECT_EQ(std::count(heard.kinds.begin(), heard.kinds.end(), MessageKind::parts) + (is_told ? 2 : 1),
-                static_cast<std::ptrdiff_t>(heard.kinds.size()));
-      EXPECT_EQ(heard.begin.longest_ray, 2.5);
-      ASSERT_EQ(heard.begin.tiles, map.tiles(c).size());
+      const Summary summary = summary_of(mine, frame);
+      const bool gets_end = c == end_goes_to(job.settings.projector, compositors);
+      ASSERT_GE(summary.kinds.size(), gets_end ? 2u : 1u);
+      EXPECT_EQ(summary.kinds.front(), MessageKind::begin);
+      EXPECT_EQ(summary.kinds.back() == MessageKind::end, gets_end);
+      EXPECT_EQ(std::count(summary.kinds.begin(), summary.kinds.end(), MessageKind::parts) + (gets_end ? 2 : 1),
+                static_cast<std::ptrdiff_t>(summary.kinds.size()));
+      EXPECT_EQ(summary.begin.longest_ray, 2.5);
+      ASSERT_EQ(summary.begin.tiles, map.tiles(c).size());
       std::vector<std::uint32_t> begun;
-      for (const std::uint32_t place : heard.begun) begun.push_back(map.tiles(c)[place]);
+      for (const std::uint32_t place : summary.begun) begun.push_back(map.tiles(c)[place]);
       std::vector<std::uint32_t> order;  // of the parts
-      for (const PartHeader& part : heard.parts)
+      for (const PartHeader& part : summary.parts)
         if (order.empty() || order.back() != part.tile) order.push_back(part.tile);
       EXPECT_EQ(order, begun) << "seed " << seed;  // each expected tile once, in the compositor's order
       for (const std::uint32_t tile : begun) {
@@ -212,13 +212,13 @@ TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
           const Bytes records = records_of(tile, part, sizes[tile][part]);
           expected.insert(expected.end(), records.begin(), records.end());
         }
-        EXPECT_EQ(heard.records.at(tile), expected) << "tile " << tile << ", seed " << seed;
+        EXPECT_EQ(summary.records.at(tile), expected) << "tile " << tile << ", seed " << seed;
       }
-      for (std::size_t i = 0; i < heard.parts.size(); ++i)
-        EXPECT_EQ(heard.parts[i].last != 0,
-                  i + 1 == heard.parts.size() || heard.parts[i + 1].tile != heard.parts[i].tile);
-      total = sum(total, heard.end);
-      bytes += heard.bytes;
+      for (std::size_t i = 0; i < summary.parts.size(); ++i)
+        EXPECT_EQ(summary.parts[i].last != 0,
+                  i + 1 == summary.parts.size() || summary.parts[i + 1].tile != summary.parts[i].tile);
+      total = sum(total, summary.end);
+      bytes += summary.bytes;
       messages += mine.size();
     }
     // Counted once.
@@ -263,7 +263,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   outbox.put(part_of(1, 0, 0, true));
   outbox.end_frame({});
   receiver.join();
-  EXPECT_EQ(heard_of(job.received[0], 0).records.at(0).size(), parts * part_bytes);
+  EXPECT_EQ(summary_of(job.received[0], 0).records.at(0).size(), parts * part_bytes);
 }
 
 TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
@@ -287,7 +287,7 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
   outbox.end_frame({});
   receiver.join();
   std::vector<std::uint32_t> order;
-  for (const PartHeader& part : heard_of(job.received[0], 0).parts) order.push_back(part.tile);
+  for (const PartHeader& part : summary_of(job.received[0], 0).parts) order.push_back(part.tile);
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
@@ -306,9 +306,9 @@ TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
   outbox.pass(3);
   outbox.end_frame({});
   while (MessageReader(job.received[0].back(), 0).kind() != MessageKind::end) ASSERT_TRUE(job.take(0, true));
-  const Heard heard = heard_of(job.received[0], 0);
+  const Summary summary = summary_of(job.received[0], 0);
   std::vector<std::tuple<std::uint32_t, std::uint64_t, bool>> parts;
-  for (const PartHeader& part : heard.parts) parts.emplace_back(part.tile, part.bytes, part.last != 0);
+  for (const PartHeader& part : summary.parts) parts.emplace_back(part.tile, part.bytes, part.last != 0);
   EXPECT_EQ(parts, (std::vector<std::tuple<std::uint32_t, std::uint64_t, bool>>{
                        {0, 32, false}, {0, 32, true}, {1, 0, true}, {2, 64, true}, {3, 0, true}}));
 }
@@ -348,7 +348,7 @@ TEST(Outbox, AStoppedFrameEndsEveryOpenTileAndReportsIt) {
   for (int c = 0; c < 2; ++c) {
     while (job.take(c, false, milliseconds(1))) {
     }
-    for (const PartHeader& part : heard_of(job.received[static_cast<std::size_t>(c)], 4).parts)
+    for (const PartHeader& part : summary_of(job.received[static_cast<std::size_t>(c)], 4).parts)
       if (part.last != 0) {
         EXPECT_TRUE(last.emplace(part.tile, part.last).second);
       }

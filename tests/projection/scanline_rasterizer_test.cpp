@@ -26,7 +26,7 @@ struct Segment {
 /// By pixel, row-major, then by tet: at most one segment each.
 using Rays = std::vector<std::map<std::uint32_t, Segment>>;
 
-enum class Way { planes, scanline };
+enum class Rasterizer { planes, scanline };
 
 struct Frame {
   const scene::TetMesh& mesh;
@@ -45,7 +45,7 @@ struct Frame {
 
 /// All segments of an image rasterized in rectangles of `tile` pixels a side; checks invariants that hold for any
 /// input.
-Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Way way = Way::scanline,
+Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Rasterizer rasterizer = Rasterizer::scanline,
                 RasterCounts* counts_out = nullptr) {
   std::vector<TileEntry> entries;
   for (std::uint32_t t = 0; t < frame.mesh.tets.size(); ++t) entries.push_back({0, t});
@@ -61,8 +61,9 @@ Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Way way = W
         out.size = 0;
         const auto rest = std::span(entries).subspan(next);
         const std::size_t taken =
-            way == Way::scanline ? rasterize_scanline({frame.projected, frame.edge}, rest, rect, buffers, out, counts)
-                                 : rasterize_planes(frame.projected, rest, rect, out, counts);
+            rasterizer == Rasterizer::scanline
+                ? rasterize_scanline({frame.projected, frame.edge}, rest, rect, buffers, out, counts)
+                : rasterize_planes(frame.projected, rest, rect, out, counts);
         if (taken == 0) throw std::runtime_error("no progress");
         next += taken;
         if (out.size > out.capacity()) throw std::runtime_error("more segments than room");
@@ -151,11 +152,11 @@ TEST(ScanlineRasterizer, IsPlanesToFloatRoundingWhereNoRayComesNearAnEdge) {
   const scene::ImageSize size{31, 27};
   const Frame frame(mesh, oblique(), size);
   ASSERT_GT(closest_edge(frame, size), 1e-4);  // float rounds a pixel coordinate of this image by 1e-6
-  const Rays exact = rasterized(frame, size, 16, Way::planes);
+  const Rays exact = rasterized(frame, size, 16, Rasterizer::planes);
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
     RasterCounts counts;
-    const Rays rays = rasterized(frame, size, 16, Way::scanline, &counts);
+    const Rays rays = rasterized(frame, size, 16, Rasterizer::scanline, &counts);
     EXPECT_EQ(counts.unpaired, 0u);
     std::size_t segments = 0;
     for (std::size_t p = 0; p < rays.size(); ++p) {
@@ -185,10 +186,10 @@ TEST(ScanlineRasterizer, BitsDoNotDependOnTheRectangle) {
          {oblique(), down_z(5, 37.0 / 32, {1 / 32., -1 / 32.}), down_z(5, 0.03, {0.21, 0.37})}) {
       const Frame frame(mesh, camera, size);
       RasterCounts counts;
-      const Rays whole = rasterized(frame, size, 64, Way::scanline, &counts);
+      const Rays whole = rasterized(frame, size, 64, Rasterizer::scanline, &counts);
       for (const int tile : {1, 3, 8, 16}) {
         RasterCounts in_tiles;
-        EXPECT_EQ(rasterized(frame, size, tile, Way::scanline, &in_tiles), whole) << tile;
+        EXPECT_EQ(rasterized(frame, size, tile, Rasterizer::scanline, &in_tiles), whole) << tile;
         EXPECT_EQ(in_tiles.unpaired, counts.unpaired);
       }
     }

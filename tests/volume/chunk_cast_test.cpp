@@ -78,8 +78,8 @@ void cast_on(const Volume& v, const volume::RenderSettings& settings, const scen
 scene::Image image_of(const Volume& v, const volume::RenderSettings& settings, const scene::Camera& camera,
                       const scene::TransferFunction& function, const std::vector<VoxelBox>& chunks) {
   scene::Image image(size);
-  scene::FrameWatch nobody;
-  volume::ImageSink sink(image, nullptr, nobody);
+  scene::FrameWatch unwatched;
+  volume::ImageSink sink(image, nullptr, unwatched);
   cast_on(v, settings, camera, function, chunks, false, sink);
   return image;
 }
@@ -226,14 +226,14 @@ TEST(ChunkCast, UncertainRaysAreCastAgainWithinTheirChunk) {
 
 TEST(ChunkCast, AContinuedRayHasTheBitsOfAnUninterruptedOne) {
   const Volume points = make_volume({65, 65, 65}, Field::smooth), cells = make_volume({64, 64, 64}, Field::noise, true);
-  const std::pair<const char*, std::size_t> ways[] = {{"oblique", 2}, {"from -x", 0}, {"from y", 1}, {"along z", 2}};
+  const std::pair<const char*, std::size_t> cases[] = {{"oblique", 2}, {"from -x", 0}, {"from y", 1}, {"along z", 2}};
   test::SomeCases some(2);
-  for (const auto& way : ways) {
+  for (const auto& c : cases) {
     if (!some.next()) continue;
-    const char* const name = way.first;  // clang 14 does not allow a lambda to capture a structured binding
+    const char* const name = c.first;  // clang 14 does not allow a lambda to capture a structured binding
     const scene::Camera camera = view(name);
     scene::GridIndex sides{64, 64, 64};
-    sides[way.second] = 32;
+    sides[c.second] = 32;
     const auto check = [&](const Volume& v, const volume::RenderSettings& settings, const char* what) {
       const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, sides, camera);
       ASSERT_EQ(chunks.size(), 2u);
@@ -276,8 +276,8 @@ TEST(ChunkCast, ClosedRaysDoNoMoreWorkAndKeepWhatTheyHave) {
   EXPECT_TRUE(cast.open(size.width / 2, size.height / 2));
   for (std::size_t n = 1; n < chunks.size(); ++n) cast.advance(chunks[n]);
   scene::Image image(size);
-  scene::FrameWatch nobody;
-  volume::ImageSink sink(image, nullptr, nobody);
+  scene::FrameWatch unwatched;
+  volume::ImageSink sink(image, nullptr, unwatched);
   cast.emit(sink);
   bool differs = false;
   for (int y = 0; y < size.height; ++y)

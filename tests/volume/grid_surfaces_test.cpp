@@ -416,8 +416,8 @@ TEST(GridSurface, GoesInChunksToo) {
   for (const char* name : {"oblique", "perspective"}) {
     const scene::Image whole = renderer.render(view(name), size, smooth_function()).image;
     scene::Image image(size);
-    scene::FrameWatch nobody;
-    volume::ImageSink sink(image, nullptr, nobody);
+    scene::FrameWatch unwatched;
+    volume::ImageSink sink(image, nullptr, unwatched);
     volume::ChunkCast cast(renderer, view(name), size, smooth_function());
     for (const volume::VoxelBox& chunk : volume::boxes_front_to_back(volume.grid.geometry, {32, 20, 32}, view(name)))
       cast.advance(chunk);

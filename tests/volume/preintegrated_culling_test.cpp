@@ -66,14 +66,14 @@ TEST(PreintegratedCulling, LoadsLittleMoreThanWhatShows) {
   const Volume v = blobs(false, false);
   volume::RenderSettings s;
   s.grid.brick_size = 8;
-  volume::RenderStatistics exact_ones, culled;
-  render(v, view("oblique"), between(), s, &exact_ones);
+  volume::RenderStatistics exact, culled;
+  render(v, view("oblique"), between(), s, &exact);
   s.integrator.kind = IntegratorKind::preintegrated;
   const scene::Image image = render(v, view("oblique"), between(), s, &culled);
   EXPECT_GT(*std::max_element(image.rgba.begin(), image.rgba.end()), 0.1f);
   EXPECT_GT(culled.bricks_invisible, culled.bricks_total / 2);
   EXPECT_LT(culled.bricks_loaded, culled.bricks_total / 2);
-  EXPECT_LE(culled.bricks_invisible, exact_ones.bricks_invisible);
+  EXPECT_LE(culled.bricks_invisible, exact.bricks_invisible);
 }
 
 }  // namespace
