@@ -114,7 +114,7 @@ def main():
         tessera(args, "render", args.input, *data, *render_words, "-o", folder / "tessera.pfm", "--report", folder / "scene.json", "--quiet")
         scene = json.loads((folder / "scene.json").read_text())
         if scene["method"]["emission"] != "absorption":
-            sys.exit("vtk_chart.py: VTK knows emission by absorption only")
+            sys.exit("vtk_chart.py: VTK supports emission by absorption only")
         camera = {k: v if isinstance(v, list) else [v] for k, v in scene["frames"][0]["view"].items()}
         knots = scene["transfer_function"]["knots"]
         repeat = int(args.repeat or 5)

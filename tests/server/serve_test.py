@@ -210,7 +210,7 @@ def answers(file):
         server.json("GET", "/api/camera", expect=405)
 
 
-def stand_in_of(file, launcher=()):
+def preview_of(file, launcher=()):
     """A preview is shown while moving if nothing else is fast enough; never at rest."""
     with Server(options.tessera, file, "--latency", "1", launcher=launcher, environment=MPI if launcher else None) as server:
         state = dict(server.data()["defaults"], size="200x150")
@@ -311,7 +311,7 @@ def part_pictures():
         if not options.without_mpi and file.name != "cells.vtu":
             pictures_of(file, MPIRUN)
     tessera("generate", "cube", "many_cells.vtu", "n=24", "cell_data=2")
-    stand_in_of(folder / "many_cells.vtu")
+    preview_of(folder / "many_cells.vtu")
     (folder / "s.pvd").write_text("<VTKFile type='Collection'><Collection><DataSet timestep='1' file='ball.vtu'/>"
                                   "<DataSet timestep='2' file='ball.vtu'/></Collection></VTKFile>")
     for words, step in ((), "0"), (("--time-step", "1"), "1"):
@@ -320,7 +320,7 @@ def part_pictures():
             check(found["defaults"]["time-step"] == step and found["times"] == [1, 2], found)
     if not options.without_mpi:
         for name in ("ball.vtu", "ripples.vti"):
-            stand_in_of(folder / name, MPIRUN)
+            preview_of(folder / name, MPIRUN)
 
 
 def part_refusals():
