@@ -142,7 +142,7 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
   }
 
  private:
-  SentNormals sent_;
+  projection::SentNormals sent_;
 
  protected:
   [[nodiscard]] double first_from(double depth) const override { return depth; }
@@ -206,6 +206,7 @@ class WindowMerger final : public SegmentMerger<LatticeEncoding> {
   }
 
   void add(const exchange::TilePart& part) override {
+    const bool lit = part.kind == exchange::RecordKind::lit_lattice;
     exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto header = reader.take<exchange::LatticeHeader>();
@@ -214,13 +215,14 @@ class WindowMerger final : public SegmentMerger<LatticeEncoding> {
       Square& square = squares_[place.square];
       projection::SegmentWindows& windows = square.store;
       if (!square.sink) {
-        windows.reset(static_cast<std::size_t>(square.rect.area()), first_capacity);
+        windows.reset(static_cast<std::size_t>(square.rect.area()), first_capacity, lit);
         open(square);
         hold(windows.bytes() + sizeof(PictureSink<LatticeEncoding>), first_capacity);
       }
       for (std::uint32_t i = 0; i < header.segments; ++i) {
         const auto segment = reader.take<projection::LatticeSegment>();
-        while (!windows.push(place.pixel, segment)) grow(windows);
+        const auto light = lit ? reader.take<projection::SegmentLight>() : projection::SegmentLight{};
+        while (!windows.push(place.pixel, segment, light)) grow(windows);
       }
     }
   }

@@ -89,7 +89,11 @@ std::uint64_t SegmentSink<LatticeEncoding>::write(Store& windows, std::int64_t /
     const std::uint32_t count = windows.count(p);
     if (count == 0) continue;
     exchange::append(out, exchange::LatticeHeader{writer.tile_pixel(p), count});
-    for (std::uint32_t k = 0; k < count; ++k) exchange::append(out, windows.segments()[k * windows.stride() + p]);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::size_t at = k * windows.stride() + p;
+      exchange::append(out, windows.segments()[at]);
+      if (windows.lights() != nullptr) exchange::append(out, windows.lights()[at]);
+    }
     writer.count(count);
     written += count;
   }

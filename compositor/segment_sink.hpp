@@ -4,7 +4,7 @@
 #include <span>
 
 #include "compositor/fragment_sink.hpp"
-#include "compositor/matter_light.hpp"
+#include "projection/matter_light.hpp"
 #include "scene/lattice.hpp"
 
 namespace tessera::compositor {
@@ -46,7 +46,7 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
   /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
   /// sink. `normals`: sent with the segments; null: not sent. Cell data have none.
   SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver,
-              const CellNormals* normals = nullptr)
+              const projection::CellNormals* normals = nullptr)
       : RawSink(cell_data            ? exchange::RecordKind::chains_of_cells
                 : normals != nullptr ? exchange::RecordKind::lit_chains
                                      : exchange::RecordKind::chains,
@@ -61,15 +61,17 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
 
   bool cell_data_;
   std::span<const std::uint64_t> global_tet_;
-  const CellNormals* normals_;
+  const projection::CellNormals* normals_;
 };
 
 /// Unsorted, because the compositor sorts: always copies all segments.
 template <>
 class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
  public:
-  SegmentSink(const scene::Lattice& lattice, Deliver deliver)
-      : RawSink(exchange::RecordKind::lattice, std::move(deliver)), lattice_(lattice) {}
+  /// `lit`: the windows have the segments' lights, which are sent along.
+  SegmentSink(const scene::Lattice& lattice, Deliver deliver, bool lit = false)
+      : RawSink(lit ? exchange::RecordKind::lit_lattice : exchange::RecordKind::lattice, std::move(deliver)),
+        lattice_(lattice) {}
 
  private:
   std::uint64_t write(Store& windows, std::int64_t final_step, exchange::PartWriter& writer) override;

@@ -39,6 +39,7 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
     case exchange::RecordKind::lit_chains:
       return make_segment_merger(context, rect);
     case exchange::RecordKind::lattice:
+    case exchange::RecordKind::lit_lattice:
       return make_window_merger(context, rect);
     case exchange::RecordKind::tuples:
       return make_tuple_merger(context, rect);

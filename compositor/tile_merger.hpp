@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "compositor/matter_light.hpp"
+#include "projection/matter_light.hpp"
 #include "exchange/wire.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
@@ -49,7 +49,7 @@ struct MergeContext {
   /// Set to true if runs of a pixel overlap, so that no order of them is right; may be null.
   std::atomic<bool>* overlapping = nullptr;
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
-  const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
+  const projection::MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
 
   /// An upper bound of the light behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {

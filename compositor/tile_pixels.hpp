@@ -28,7 +28,7 @@ struct CrossingInBatch {
   double value;  ///< the field's value there, or the surface's
 };
 /// Applies the light on its tet to segment `at` of a batch, after integration.
-inline void light_segment(const MatterLight::Light& light, std::size_t at, double optical_depth,
+inline void light_segment(const projection::MatterLight::Light& light, std::size_t at, double optical_depth,
                           integrals::SegmentBatch& batch) {
   const double white = light.white * -std::expm1(-optical_depth);
   for (auto* color : {&batch.red, &batch.green, &batch.blue}) (*color)[at] = light.own * (*color)[at] + white;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "compositor/matter_light.hpp"
+#include "projection/matter_light.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/pixel_space.hpp"
@@ -21,8 +21,8 @@ struct TileScene {
   scene::Lattice lattice{};
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
   // In double precision:
-  const MatterLight* light = nullptr;    ///< on the matter; null: none
-  const CellNormals* normals = nullptr;  ///< with light: the normals of the segments' tets
+  const projection::MatterLight* light = nullptr;    ///< on the matter; null: none
+  const projection::CellNormals* normals = nullptr;  ///< with light: the normals of the segments' tets
 
   /// Behind a lower transmittance, nothing changes a pixel by the integrator's termination error.
   [[nodiscard]] double least_transmittance() const {

@@ -24,6 +24,7 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
 }
 #else
 using sorting::HWY_NAMESPACE::has_row;
+using sorting::HWY_NAMESPACE::PixelList;
 using sorting::HWY_NAMESPACE::segment_at;
 
 /// Transposes four segments, in every fourth lane of four vectors, to their fields in registers: this takes a quarter
@@ -69,11 +70,12 @@ class PixelGroup {
         state_(state),
         light_(light),
         pixel_(pixel),
-        list_(windows.segments() + pixel) {}
+        list_(windows.segments() + pixel),
+        lights_(windows.lights() != nullptr ? windows.lights() + pixel : nullptr) {}
 
   /// Sorts the lists' slots. Returns the number of rows, which is the length of the longest list.
   HWY_INLINE std::size_t sort() {
-    return sorting::HWY_NAMESPACE::sort_windows(list_, windows_.stride(), windows_.counts() + pixel_, state_.order);
+    return sorting::HWY_NAMESPACE::sort_windows({list_, lights_}, windows_.stride(), windows_.counts() + pixel_, state_.order);
   }
 
   /// Loads the segments of the rows [from, to) before `final_step`, in open pixels; for runs, it stores where they end.
@@ -106,6 +108,13 @@ class PixelGroup {
       const MI takes = And(is_final, open);
       const VF length = IfThenElseZero(RebindMask(df, takes), ConvertTo(df, s.back - front) * length_per_step);
       s.front = IfThenElse(takes, front, none);
+      if (HWY_UNLIKELY(lights_ != nullptr)) {
+        // A light is half as long as a segment.
+        const VI slots = Load(d, state_.order.slots.data() + row * lanes);
+        const VI place = ShiftRight<1>(slots) + Iota(d, 0) * Set(d, static_cast<std::int32_t>(sizeof *lights_));
+        Store(GatherOffset(df, &lights_->own, place), df, light_.own + (row - from) * lanes);
+        Store(GatherOffset(df, &lights_->white, place), df, light_.white + (row - from) * lanes);
+      }
       light_.put_segment(s, length, table_.locate(s.scalar_front, s.scalar_back >= s.scalar_front),
                          (row - from) * lanes);
       if constexpr (runs) {
@@ -138,6 +147,7 @@ class PixelGroup {
       // In three passes, with dependency chains short enough for a processor to work on several rows at once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
+      if (HWY_UNLIKELY(lights_ != nullptr)) light_.light_matter(to - from);
       if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces, rules.runs || some_unseen());
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
@@ -172,12 +182,19 @@ class PixelGroup {
     alignas(64) std::int32_t first[most_lanes];
     Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
+    if (lights_ != nullptr && state_.rest_lights.size() < most * lanes) state_.rest_lights.resize(most * lanes);
     for (std::size_t k = 0; k < most; ++k)
       for (std::size_t lane = 0; lane < own; ++lane) {
         const std::size_t row = std::min(static_cast<std::size_t>(first[lane]) + k, rows - 1);
-        state_.rest[k * lanes + lane] = segment_at(list_ + lane, state_.order.slots[row * lanes + lane]);
+        const std::int32_t slot = state_.order.slots[row * lanes + lane];
+        state_.rest[k * lanes + lane] = segment_at(list_ + lane, slot);
+        if (lights_ != nullptr)
+          state_.rest_lights[k * lanes + lane] = PixelList{list_, lights_}.of_lane(lane).light_at(slot);
       }
-    for (std::size_t k = 0; k < most; ++k) std::copy_n(&state_.rest[k * lanes], own, list_ + k * windows_.stride());
+    for (std::size_t k = 0; k < most; ++k) {
+      std::copy_n(&state_.rest[k * lanes], own, list_ + k * windows_.stride());
+      if (lights_ != nullptr) std::copy_n(&state_.rest_lights[k * lanes], own, lights_ + k * windows_.stride());
+    }
     return gone;
   }
 
@@ -187,6 +204,7 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
+  projection::SegmentLight* lights_;  ///< null: not lit
   VI done_ = Zero(DI());  ///< segments of each lane that were final
 };
 
@@ -236,6 +254,7 @@ HWY_EXPORT(composite_windows);
 
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
                                 std::size_t at_least, WindowState& state, scene::StageTimer& timer) {
+  state.lit = windows.lights() != nullptr;
   const auto end = static_cast<std::int32_t>(std::clamp<std::int64_t>(final_step, -0x7fffffff, 0x7fffffff));
   const auto several = static_cast<std::int32_t>(std::clamp<std::size_t>(at_least, 1, 0x7fffffff));
   return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, several, state, timer);

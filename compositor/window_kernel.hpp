@@ -55,6 +55,8 @@ struct WindowState {
   // Working memory.
   sorting::WindowOrder order;
   std::vector<projection::LatticeSegment> rest;
+  std::vector<projection::SegmentLight> rest_lights;
+  bool lit = false;  ///< the windows' segments have lights
 
   /// Starts empty rays for the pixels of `rect`, all open.
   void start(const scene::PixelRect& rect, const projection::PixelSpace& space);

@@ -49,6 +49,7 @@ struct LightRows {
   alignas(64) std::int32_t front[numbers], back[numbers];
   alignas(64) std::int32_t interval[numbers];
   alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
+  alignas(64) float own[numbers], white[numbers];  ///< of lit matter: SegmentLight
   // The positions of segments of more than one piece, until they fill the lanes.
   alignas(64) std::int32_t waiting_at[numbers + most_lanes];
   std::size_t waiting = 0;
@@ -149,6 +150,18 @@ struct LightRows {
       }
     }
     waiting = 0;
+  }
+
+  /// Lights the matter of the first `count` rows, once integrated.
+  HWY_NOINLINE void light_matter(std::size_t count) {
+    const DF d;
+    for (std::size_t row = 0; row < count; ++row) {
+      if (!lit[row]) continue;
+      const std::size_t at = row * hn::Lanes(d);
+      const VF of_color = Load(d, own + at), shine = Load(d, white + at) * Load(d, alpha + at);
+      for (float* color : {red + at, green + at, blue + at})
+        Store(MulAdd(of_color, Load(d, color), shine), d, color);
+    }
   }
 
   /// Computes the light of the segments in the first `count` rows.

@@ -30,6 +30,7 @@
 ///              compositor's image has the same bits as a single process's. Where a segment begins at a surface in the
 ///              volume, its front scalar is a mark, like that of a segment of length zero in chains
 ///              (projection/surface_crossings.hpp).
+///   lit_lattice  the same as lattice, with a SegmentLight behind each LatticeSegment
 ///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
 ///                 segment is this segment, 16 bytes, which the compositor integrates.
 ///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1
@@ -47,7 +48,8 @@ enum class RecordKind : std::uint8_t {
   lattice_runs = 6,
   lit_chains = 7,
   cells = 8,
-  pixels = 9
+  pixels = 9,
+  lit_lattice = 10
 };
 
 struct FrameBegin {

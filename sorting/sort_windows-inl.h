@@ -30,17 +30,35 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 
-/// Order of one pixel's segments: front, back, then the scalars. Segments equal in all four are interchangeable.
-HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
-  if (a.front != b.front) return a.front < b.front;
-  if (a.back != b.back) return a.back < b.back;
-  if (a.scalar_front != b.scalar_front) return a.scalar_front < b.scalar_front;
-  return a.scalar_back < b.scalar_back;
-}
-
 /// The segment `slot` bytes behind `list`. Slots are in bytes because this saves a shift in the address.
 HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
   return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
+}
+
+/// A pixel's list: where it begins, and its lights; null: not lit.
+struct PixelList {
+  const projection::LatticeSegment* segments;
+  const projection::SegmentLight* lights;
+
+  HWY_INLINE PixelList of_lane(std::size_t lane) const {
+    return {segments + lane, lights != nullptr ? lights + lane : nullptr};
+  }
+  /// A light is half as long as a segment.
+  HWY_INLINE const projection::SegmentLight& light_at(std::int32_t slot) const {
+    static_assert(2 * sizeof(projection::SegmentLight) == sizeof(projection::LatticeSegment));
+    return *reinterpret_cast<const projection::SegmentLight*>(reinterpret_cast<const char*>(lights) + slot / 2);
+  }
+};
+
+/// Order of one pixel's segments: front, back, the scalars, then the light. Segments equal in all are interchangeable.
+HWY_INLINE bool before(const PixelList& list, std::int32_t slot_a, std::int32_t slot_b) {
+  const projection::LatticeSegment &a = segment_at(list.segments, slot_a), &b = segment_at(list.segments, slot_b);
+  if (a.front != b.front) return a.front < b.front;
+  if (a.back != b.back) return a.back < b.back;
+  if (a.scalar_front != b.scalar_front) return a.scalar_front < b.scalar_front;
+  if (a.scalar_back != b.scalar_back || list.lights == nullptr) return a.scalar_back < b.scalar_back;
+  const projection::SegmentLight &on_a = list.light_at(slot_a), &on_b = list.light_at(slot_b);
+  return on_a.own != on_b.own ? on_a.own < on_b.own : on_a.white < on_b.white;
 }
 
 /// The lanes whose lists have this row.
@@ -48,32 +66,31 @@ HWY_INLINE MI has_row(std::size_t row, VI count) { return Set(DI(), static_cast<
 
 /// Completes the order of a list that the network left nearly sorted: keys contain only the front, and not always all
 /// of its bits.
-HWY_NOINLINE inline void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
-                                     std::int32_t* slots) {
+HWY_NOINLINE inline void settle_ties(const PixelList& list, std::size_t count, std::size_t lanes, std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t slot = slots[i * lanes];
     std::size_t hole = i;
-    for (; hole > 0 && before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes])); --hole)
+    for (; hole > 0 && before(list, slot, slots[(hole - 1) * lanes]); --hole)
       slots[hole * lanes] = slots[(hole - 1) * lanes];
     slots[hole * lanes] = slot;
   }
 }
 
 /// Sorts one lane's list that is too long for the networks.
-HWY_NOINLINE inline void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
-                                   std::size_t lanes, std::int32_t* slots) {
+HWY_NOINLINE inline void sort_long(const PixelList& list, std::size_t stride, std::size_t count, std::size_t lanes,
+                                   std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
-  std::sort(order.begin(), order.end(),
-            [&](std::int32_t i, std::int32_t j) { return before(segment_at(list, i), segment_at(list, j)); });
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list.segments);
+  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) { return before(list, i, j); });
   for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
 }
 
-/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `list` is the
-/// first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns the number
+/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `lists` begins with
+/// the first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns the number
 /// of rows, which is the length of the longest list.
-HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std::size_t stride,
-                                    const std::uint32_t* counts, WindowOrder& order) {
+HWY_INLINE std::size_t sort_windows(const PixelList& lists, std::size_t stride, const std::uint32_t* counts,
+                                    WindowOrder& order) {
+  const projection::LatticeSegment* const list = lists.segments;
   const DI d;
   const DF df;
   const std::size_t lanes = hn::Lanes(d);
@@ -85,7 +102,7 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   if (order.keys.size() < rows * lanes) order.keys.resize(rows * lanes), order.slots.resize(rows * lanes);
   std::int32_t* slots = order.slots.data();
   if (chunks > static_cast<std::size_t>(most_sort_chunks)) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) sort_long(list + lane, stride, counts[lane], lanes, slots + lane);
+    for (std::size_t lane = 0; lane < lanes; ++lane) sort_long(lists.of_lane(lane), stride, counts[lane], lanes, slots + lane);
     return most;
   }
 
@@ -123,7 +140,7 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   if (!AllFalse(d, ties)) {
     for (unsigned left = lane_bits(ties); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
-      settle_ties(list + lane, counts[lane], lanes, slots + lane);
+      settle_ties(lists.of_lane(lane), counts[lane], lanes, slots + lane);
     }
   }
   return most;

@@ -104,7 +104,7 @@ void PeelSink::add(std::size_t k) {
     if (scene_.light != nullptr && batch_.optical_depth[k] > 0) {
       const auto p = static_cast<int>(w.pixel);
       const int x = rect_.x0 + p % rect_.width(), y = rect_.y0 + p / rect_.width();
-      const MatterLight::Light light =
+      const projection::MatterLight::Light light =
           scene_.light->on(scene_.normals->of(w.tet), scene_.space->direction(x + 0.5, y + 0.5));
       stretch.own = light.own, stretch.white = light.white;
     }

@@ -105,7 +105,8 @@ class GlMerger final : public TileMerger {
           break;
         case exchange::RecordKind::cells:
         case exchange::RecordKind::pixels:
-        case exchange::RecordKind::lit_chains:  // devices do not light matter
+        case exchange::RecordKind::lit_chains:
+        case exchange::RecordKind::lit_lattice:  // devices do not light matter
           throw scene::Error(scene::ErrorCode::system_failure,
                              "exchange: what no device takes; all ranks must run the same program");
         case exchange::RecordKind::tuples: {

@@ -342,7 +342,9 @@ FrameStatistics FrameProjector::project_in_arena(const FrameTask& frame, const T
         frame.space->perspective(),
         depth_limits_of(*frame.space, *frame.lattice, *frame.function, settings_.emission, longest_ray(frame)),
         culled.steps,
-        context.at_steps};
+        context.at_steps,
+        prepared_->mesh().association == scene::Association::point ? frame.light : nullptr,
+        frame.space};
     return std::make_unique<Worker<LatticeSource>>(sinks.on_lattice(), std::move(cells), context, view);
   });
   side.wait();

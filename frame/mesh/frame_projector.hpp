@@ -30,6 +30,7 @@ struct FrameTask {
   const scene::SurfaceSet* surfaces = nullptr;        ///< in the volume; may be null or empty
   std::span<const projection::SurfaceFaces> faces{};  ///< of triangle surfaces
   const scene::Lattice* lattice = nullptr;            ///< for rendering on the lattice; null: in double precision
+  const projection::MatterLight* light = nullptr;     ///< on the lattice: on the matter of point data; null: none
   std::int32_t number = -1;                           ///< for the trace
   float longest_edge = 0;                             ///< scanline: of the whole data set, world units; 0: of this mesh
   double longest_ray = 0;                             ///< bounds a ray's length in the whole mesh; 0: diagonal()

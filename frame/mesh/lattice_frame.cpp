@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "projection/lattice/lattice_rasterizer.hpp"
+#include "projection/matter_light.hpp"
 #include "scene/error_budget.hpp"
 
 namespace tessera::frame {
@@ -58,12 +59,15 @@ double most_length_per_depth(const projection::PixelSpace& space) { return space
 
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,
-                                         const scene::TransferFunction& function, const Settings& settings) {
+                                         const scene::TransferFunction& transfer_function, const Settings& settings) {
   using scene::Lattice;
+  const std::optional<scene::Shading>& shading = settings.mesh.shading;
+  const scene::TransferFunction function =
+      shading ? projection::brightest(*shading, transfer_function) : transfer_function;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      settings.surfaces.has_faces() || settings.mesh.shading || !projection::lattice_available())
+      settings.surfaces.has_faces() || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

@@ -35,7 +35,7 @@ bool LatticeSource::start(const scene::PixelRect& rect, const projection::DepthO
   rect_ = rect;
   order_ = &order;
   cells_ = from_ = placed_ = stream_.size = 0;
-  windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity_);
+  windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity_, view_.light != nullptr);
   return true;
 }
 

@@ -10,7 +10,7 @@
 #include "compositor/deep/deep_collector.hpp"
 #include "compositor/deep/deep_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
-#include "compositor/matter_light.hpp"
+#include "projection/matter_light.hpp"
 #include "compositor/picture_sink.hpp"
 #include "frame/mesh/boundary_faces.hpp"
 #include "frame/mesh/frame_projector.hpp"
@@ -52,7 +52,7 @@ struct Renderer::State {
   FrameSettings frame;
   FrameProjector projector;
   std::array<double, 2> scalar_range;
-  compositor::MeshNormals normals;
+  projection::MeshNormals normals;
   std::optional<BoundaryFaces> boundary;  ///< if the settings have boundary surfaces
   scene::TransferFunction function;
   std::optional<integrals::SegmentIntegrator> kept;
@@ -83,7 +83,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
   if (deep != nullptr) collector.emplace(size, settings.memory_bytes / 2);
-  std::optional<compositor::MatterLight> light;
+  std::optional<projection::MatterLight> light;
   if (settings.mesh.shading) light.emplace(*settings.mesh.shading, camera);
   const double max_color = light ? light->brightest(transfer_function.max_color()) : transfer_function.max_color();
   compositor::TileScene scene{
@@ -117,6 +117,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
        .surfaces = &surfaces,
        .faces = faces,
        .lattice = lattice ? &*lattice : nullptr,
+       .light = light ? &*light : nullptr,
        .watch = watch},
       {.in_double = sink_in_double,
        .on_lattice = [&] { return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window); },

@@ -39,9 +39,9 @@ int assembling_threads(const DistributedSettings& settings) {
   return std::min(scene::threads_for(settings.render.threads), most);
 }
 
-std::optional<compositor::MatterLight> light_of(const DistributedRun& run, const FrameJob& job) {
+std::optional<projection::MatterLight> light_of(const DistributedRun& run, const FrameJob& job) {
   if (!run.settings.render.mesh.shading) return std::nullopt;
-  return compositor::MatterLight(*run.settings.render.mesh.shading, job.camera);
+  return projection::MatterLight(*run.settings.render.mesh.shading, job.camera);
 }
 
 /// A frame on its compositor.
@@ -64,7 +64,7 @@ struct Frame {
   projection::PixelSpace space;
   integrals::SegmentIntegrator integrator;
   scene::SurfaceSet surfaces;
-  std::optional<compositor::MatterLight> light;
+  std::optional<projection::MatterLight> light;
   compositor::TileSender sender;
   std::optional<integrals::LaneTable> table;  ///< for lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: those of the table

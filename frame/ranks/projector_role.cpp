@@ -78,6 +78,7 @@ class FrameSinks {
   [[nodiscard]] const projection::PixelSpace& space() const { return space_; }
   [[nodiscard]] const std::optional<scene::Lattice>& lattice() const { return lattice_; }
   [[nodiscard]] const scene::SurfaceSet& surfaces() const { return surfaces_; }
+  [[nodiscard]] const projection::MatterLight* light() const { return scene_.light; }
 
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
     if (makes_pixels_)
@@ -100,7 +101,8 @@ class FrameSinks {
     if (makes_pixels_)
       return std::make_unique<compositor::PixelSink<sorting::LatticeEncoding>>(scene_, packs_, deliver_);
     if (settings_.exchange == Exchange::segments)
-      return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice_, deliver_);
+      return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(
+          *lattice_, deliver_, light_ && mesh_.part.association == scene::Association::point);
     return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene_, cut_, deliver_);
   }
 
@@ -114,8 +116,8 @@ class FrameSinks {
   projection::PixelSpace space_;
   integrals::SegmentIntegrator integrator_;
   scene::SurfaceSet surfaces_;
-  compositor::MeshNormals normals_;
-  std::optional<compositor::MatterLight> light_;
+  projection::MeshNormals normals_;
+  std::optional<projection::MatterLight> light_;
   compositor::TileScene scene_;
   std::optional<scene::Lattice> lattice_;
   std::optional<integrals::LaneTable> table_;
@@ -187,6 +189,7 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                                     .surfaces = &sinks.surfaces(),
                                     .faces = faces,
                                     .lattice = sinks.lattice() ? &*sinks.lattice() : nullptr,
+                                    .light = sinks.light(),
                                     .number = number,
                                     .longest_edge = mesh.longest_edge,
                                     .longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low),

@@ -22,6 +22,7 @@
 #include <hwy/highway.h>
 
 #include "projection/lattice/lattice_crossed-inl.h"
+#include "projection/lattice/lattice_normals-inl.h"
 #include "projection/lattice/segment_lanes-inl.h"
 #include "projection/surface_crossings.hpp"
 #include "scene/lanes/doubles-inl.h"
@@ -54,17 +55,6 @@ class SurfaceCuts {
   }
 
  private:
-  /// Perspective: the direction of the ray at the square's first pixel, and its change from pixel to pixel.
-  struct Rays {
-    glm::dvec3 corner{}, right{}, down{};
-    Rays(const PixelSpace& space, int x0, int y0) {
-      if (!space.perspective()) return;
-      corner = space.direction(x0 + 0.5, y0 + 0.5);
-      right = space.direction(x0 + 1.5, y0 + 0.5) - corner;
-      down = space.direction(x0 + 0.5, y0 + 1.5) - corner;
-    }
-  };
-
   /// The current parts of the segments: where they begin, and their front scalar or mark.
   struct Part {
     VI front;
@@ -80,6 +70,8 @@ class SurfaceCuts {
     const VF from = GatherIndex(df, out_.scalar_front.data(), segment),
              to = GatherIndex(df, out_.scalar_back.data(), segment);
     const VI pixel = GatherIndex(d, out_.pixel.data(), segment);
+    VF own = Zero(df), white = own;
+    if (out_.lit) own = GatherIndex(df, out_.own.data(), segment), white = GatherIndex(df, out_.white.data(), segment);
     const VI first = lookup_16(cells_.first, cell);
     const VI count = IfThenElseZero(here, lookup_16(cells_.count, cell));
     const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
@@ -119,15 +111,16 @@ class SurfaceCuts {
       const MI parts = Or(alone, AndNot(AndNot(marked, at_front), before));
       const VI begin = IfThenElse(alone, depth, part.front);
       const VF begin_scalar = IfThenElse(RebindMask(df, alone), mark, part.scalar);
+      if (out_.lit) append_light(RebindMask(df, parts), own, white, out_);
       append(RebindMask(df, parts), pixel, {begin, depth, begin_scalar, value}, out_);
       part.front = IfThenElse(before, depth, part.front);
       part.scalar = IfThenElse(RebindMask(df, before), mark, part.scalar);
     }
     // Lanes without a segment write behind the last one.
     const VI spare = Iota(d, 0) + Set(d, static_cast<std::int32_t>(out_.size));
-    const VI own = IfThenElse(here, segment, spare);
-    ScatterIndex(part.front, d, out_.front.data(), own);
-    ScatterIndex(part.scalar, df, out_.scalar_front.data(), own);
+    const VI place = IfThenElse(here, segment, spare);
+    ScatterIndex(part.front, d, out_.front.data(), place);
+    ScatterIndex(part.scalar, df, out_.scalar_front.data(), place);
   }
 
   using Place = scene::SurfaceSet::Place;
@@ -158,13 +151,8 @@ class SurfaceCuts {
   }
 
   HWY_INLINE VF cosine_of_rays(VI hit, VI cell) const {
-    const VI side = Set(DI(), SegmentWindows::side - 1);
-    const Doubles column = promote(And(ShiftRight<Hit::column_bit>(hit), side));
-    const Doubles row = promote(And(ShiftRight<Hit::row_bit>(hit), side));
-    const auto on_ray = [&](int axis) HWY_ATTR {
-      return doubles(rays_.corner[axis]) + doubles(rays_.right[axis]) * column + doubles(rays_.down[axis]) * row;
-    };
-    const Doubles x = on_ray(0), y = on_ray(1), z = on_ray(2);
+    const RayLanes ray(rays_, hit);
+    const Doubles &x = ray.x, &y = ray.y, &z = ray.z;
     const Doubles along =
         x * gather(cells_.normal[0], cell) + y * gather(cells_.normal[1], cell) + z * gather(cells_.normal[2], cell);
     const auto cosine = [](VD a, VD square, VD least)
@@ -176,7 +164,7 @@ class SurfaceCuts {
   const scene::SurfaceSet& set_;
   const LatticeSurfaces& cells_;
   std::int32_t numbers_a_place_;
-  Rays rays_;
+  SquareRays rays_;
   SegmentStream& out_;
 };
 

@@ -20,14 +20,41 @@
 
 #include <limits>
 
-#include "projection/lattice/lattice_shapes-inl.h"
+#include "projection/lattice/lattice_parts-inl.h"
 #include "projection/lattice/lattice_surfaces.hpp"
 #include "projection/surface_crossings.hpp"
+#include "scene/lanes/doubles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
+
+/// Perspective: the direction of the ray at a square's first pixel, and its change from pixel to pixel.
+struct SquareRays {
+  glm::dvec3 corner{}, right{}, down{};
+  SquareRays(const PixelSpace& space, int x0, int y0) {
+    if (!space.perspective()) return;
+    corner = space.direction(x0 + 0.5, y0 + 0.5);
+    right = space.direction(x0 + 1.5, y0 + 0.5) - corner;
+    down = space.direction(x0 + 0.5, y0 + 1.5) - corner;
+  }
+};
+
+/// The directions of the rays of hits.
+struct RayLanes {
+  Doubles x, y, z;
+
+  HWY_INLINE RayLanes(const SquareRays& rays, VI hit) {
+    const VI side = Set(DI(), SegmentWindows::side - 1);
+    const Doubles column = promote(And(ShiftRight<Hit::column_bit>(hit), side));
+    const Doubles row = promote(And(ShiftRight<Hit::row_bit>(hit), side));
+    const auto along = [&](int axis) HWY_ATTR {
+      return doubles(rays.corner[axis]) + doubles(rays.right[axis]) * column + doubles(rays.down[axis]) * row;
+    };
+    x = along(0), y = along(1), z = along(2);
+  }
+};
 
 /// Three coordinates, for as many cells as there are lanes.
 struct Vectors {
@@ -65,10 +92,10 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[
   return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
 
-/// Computes the normals and cosines of some of a batch's cells, one bit each. To be called some time after
-/// find_surfaces(), so that its prefetches can complete.
-HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
-                                      LatticeSurfaces& surfaces) {
+/// Calls take(numbers, count, normal, scalar) for groups of some of a batch's cells, a bit each: `count` lanes, with the
+/// cells' numbers in the batch, their normals and their corners' scalars.
+template <class Take>
+HWY_INLINE void with_normals(const LatticeView& view, const CellBatch& batch, unsigned cells, const Take& take) {
   const DD d;
   const hn::RebindToSigned<DD> di;
   constexpr std::size_t most = MaxLanes(DD());
@@ -76,8 +103,6 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
   const scene::TetMeshView& mesh = prepared.mesh();
   const double* const positions = &mesh.positions.front().x;
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
-  const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
-  const Vectors ray{Set(d, towards.x), Set(d, towards.y), Set(d, towards.z)};
   while (cells != 0) {
     // Lanes beyond the last read vertex 0.
     alignas(64) std::int64_t vertices[4][most] = {};
@@ -96,21 +121,33 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
                    GatherIndex(d, positions + 2, first)};
       scalar[i] = GatherIndex(d, mesh.scalars.data(), vertex);
     }
-    const Vectors normal = unit_gradient(corner, scalar);
-    const VD one = Set(d, 1), zero = Zero(d);
-    const VD least = IfThenElse(largest(normal) > zero, zero, one);
-    alignas(64) double found[5][most];
-    Store(normal.x, d, found[0]), Store(normal.y, d, found[1]), Store(normal.z, d, found[2]);
-    Store(least, d, found[3]);
-    Store(Min(Max(Abs(dot(ray, normal)), least), one), d, found[4]);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const std::size_t t = of_lane[lane];
-      for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][t] = found[axis][lane];
-      surfaces.least_cosine[t] = found[3][lane];
-      const auto cosine = static_cast<float>(found[4][lane]);
-      surfaces.cosine_code[t] = static_cast<std::int32_t>(LatticeMark::cosine_code(cosine));
-    }
+    take(of_lane, count, unit_gradient(corner, scalar), scalar);
   }
+}
+
+/// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
+/// their time.
+HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
+                                      LatticeSurfaces& surfaces) {
+  const DD d;
+  const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
+  const Vectors ray{Set(d, towards.x), Set(d, towards.y), Set(d, towards.z)};
+  with_normals(view, batch, cells,
+               [&](const std::size_t* of_lane, std::size_t count, const Vectors& normal, const VD (&)[4]) HWY_ATTR {
+                 const VD one = Set(d, 1), zero = Zero(d);
+                 const VD least = IfThenElse(largest(normal) > zero, zero, one);
+                 alignas(64) double found[5][MaxLanes(DD())];
+                 Store(normal.x, d, found[0]), Store(normal.y, d, found[1]), Store(normal.z, d, found[2]);
+                 Store(least, d, found[3]);
+                 Store(Min(Max(Abs(dot(ray, normal)), least), one), d, found[4]);
+                 for (std::size_t lane = 0; lane < count; ++lane) {
+                   const std::size_t t = of_lane[lane];
+                   for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][t] = found[axis][lane];
+                   surfaces.least_cosine[t] = found[3][lane];
+                   const auto cosine = static_cast<float>(found[4][lane]);
+                   surfaces.cosine_code[t] = static_cast<std::int32_t>(LatticeMark::cosine_code(cosine));
+                 }
+               });
 }
 
 /// Prefetches the data of cell t that find_normals() will read.
@@ -120,6 +157,12 @@ HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch
     __builtin_prefetch(&mesh.positions[v]);
     __builtin_prefetch(&mesh.scalars[v]);
   }
+}
+
+/// The same for all regular cells.
+HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch) {
+  for (unsigned left = ~batch.irregular & ((1u << batch.size) - 1); left != 0; left &= left - 1)
+    prefetch_corners(view, batch, __builtin_ctz(left));
 }
 
 /// The cells of a batch that have surfaces, one bit each; irregular ones are treated as having none.

@@ -2,6 +2,7 @@
 #include "projection/lattice/lattice_rasterizer.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/lattice/lattice_rasterizer.cpp"
@@ -11,6 +12,7 @@
 #include "projection/lattice/lattice_cover-inl.h"
 #include "projection/lattice/lattice_cross-inl.h"
 #include "projection/lattice/lattice_cut-inl.h"
+#include "projection/lattice/lattice_lights-inl.h"
 #include "projection/lattice/lattice_normals-inl.h"
 #include "projection/lattice/lattice_surfaces.hpp"
 
@@ -90,6 +92,7 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
   const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);
   out.reserve(out.size + s.size);
+  const std::size_t first = out.size;
   for (std::size_t i = 0; i < s.size; ++i) {
     out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
     if (view.projected.iso != nullptr && is_crossing(s.scalar_front[i])) {
@@ -106,6 +109,13 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
     out.scalar_back[out.size] = scalars.back;
     ++out.size;
   }
+  if (!out.lit) return;
+  const glm::vec3 normal = MeshNormals(view.projected.mesh->mesh()).of(entry.tet);
+  for (std::size_t i = first; i < out.size; ++i) {
+    const int x = rect.x0 + out.pixel[i] % rect.width(), y = rect.y0 + out.pixel[i] / rect.width();
+    const MatterLight::Light light = view.light->on(normal, view.space->direction(x + 0.5, y + 0.5));
+    out.own[i] = static_cast<float>(light.own), out.white[i] = static_cast<float>(light.white);
+  }
 }
 
 void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels, LatticeScratch& scratch,
@@ -114,6 +124,9 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
   CellBatch batch;
   CoverScratch cover_scratch;
   LatticeSurfaces surfaces;
+  std::optional<SegmentLights> lights;
+  if (view.light != nullptr) lights.emplace(view, pixels);
+  out.lit = lights.has_value();
   for (std::size_t from = 0; from < list.cells.size(); from += CellBatch::most) {
     const auto cells = list.cells.subspan(from, std::min<std::size_t>(CellBatch::most, list.cells.size() - from));
     if (from == 0) prefetch_cells(view, list.next);
@@ -126,7 +139,8 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
                           counts);
     const unsigned crossed = view.projected.iso != nullptr ? find_surfaces(view, batch, surfaces) : 0;
     const std::size_t first = out.size;
-    out.keeps_hits = crossed != 0;
+    if (lights) prefetch_corners(view, batch);
+    out.keeps_hits = crossed != 0 || lights;
     out.reserve(out.size + cells.size() * static_cast<std::size_t>(pixels.rect.area()));
     if (view.perspective)
       per_cell ? rasterize_cells<true, true>(view, batch, pixels, cover_scratch, out, counts)
@@ -134,6 +148,7 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
     else
       per_cell ? rasterize_cells<false, true>(view, batch, pixels, cover_scratch, out, counts)
                : rasterize_cells<false, false>(view, batch, pixels, cover_scratch, out, counts);
+    if (lights) lights->set(batch, first, out);
     if (crossed == 0) continue;
     const CrossedSegments segments = crossed_segments(out, first, surfaces);
     if (segments.count == 0) continue;

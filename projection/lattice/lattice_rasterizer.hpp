@@ -7,6 +7,8 @@
 
 #include "projection/depth_limits.hpp"
 #include "projection/lattice/segment_windows.hpp"
+#include "projection/matter_light.hpp"
+#include "projection/pixel_space.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
 #include "projection/steps.hpp"
@@ -35,6 +37,8 @@ struct LatticeView {
   DepthLimits depth_limits{};
   std::span<const Step> steps{};           ///< of the transfer function
   const CellsAtSteps* at_steps = nullptr;  ///< the cells that these steps make irregular; null: none
+  const MatterLight* light = nullptr;      ///< on matter, of point data; segments get a SegmentLight; null: not lit
+  const PixelSpace* space = nullptr;       ///< with light
 };
 
 /// Working memory of one thread.

@@ -50,6 +50,13 @@ HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentSt
   out.size += pack.count();
 }
 
+/// Appends to SegmentStream::own and white in the same way; to be called before append() of the lanes' segments.
+HWY_INLINE void append_light(MF hit, VF own, VF white, SegmentStream& out) {
+  const LanePacker pack(RebindMask(DI(), hit));
+  StoreU(pack(own), DF(), out.own.data() + out.size);
+  StoreU(pack(white), DF(), out.white.data() + out.size);
+}
+
 /// Appends to SegmentStream::hit in the same way; to be called before append() of the lanes' segments.
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
   const DI d;

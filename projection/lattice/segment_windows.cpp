@@ -2,6 +2,7 @@
 #include "projection/lattice/segment_windows.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/lattice/segment_windows.cpp"
@@ -14,14 +15,16 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
-std::size_t scatter(const SegmentStream& s, std::size_t, std::size_t, std::size_t, LatticeSegment*, std::uint32_t*) {
-  return s.size;
-}
+std::size_t scatter(const SegmentStream& s, std::size_t, const WindowLists&) { return s.size; }
 #else
 /// Segments are converted to records one vector at a time (a transposition in registers), then stored one by one: one
 /// 16-byte load and store each, in a loop without branches that can be mispredicted, except at its end.
-std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
-                    LatticeSegment* lists, std::uint32_t* counts) {
+template <bool lit>
+std::size_t scatter_as(const SegmentStream& s, std::size_t from, const WindowLists& to) {
+  const std::size_t capacity = to.capacity, stride = to.stride;
+  LatticeSegment* const lists = to.segments;
+  [[maybe_unused]] SegmentLight* const lights = to.lights;
+  std::uint32_t* const counts = to.counts;
   const hn::ScalableTag<std::int32_t> d;
   const hn::RebindToFloat<decltype(d)> df;
   constexpr std::size_t most = 16;
@@ -44,10 +47,15 @@ std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capaci
       const std::uint32_t count = counts[pixel];
       if (HWY_UNLIKELY(count == capacity)) return i + k;
       lists[count * stride + pixel] = records[k];
+      if constexpr (lit) lights[count * stride + pixel] = {s.own[i + k], s.white[i + k]};
       counts[pixel] = count + 1;
     }
   }
   return s.size;
+}
+
+std::size_t scatter(const SegmentStream& s, std::size_t from, const WindowLists& to) {
+  return to.lights != nullptr ? scatter_as<true>(s, from, to) : scatter_as<false>(s, from, to);
 }
 #endif  // HWY_SCALAR
 
@@ -60,12 +68,14 @@ namespace tessera::projection {
 HWY_EXPORT(scatter);
 
 std::size_t SegmentWindows::scatter(const SegmentStream& stream, std::size_t from) {
-  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from, capacity_, stride(), segments_.data(), counts_.data());
+  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from,
+                                       {capacity_, stride(), segments_.data(), lights(), counts_.data()});
 }
 
-void SegmentWindows::reset(std::size_t pixels, std::size_t capacity) {
+void SegmentWindows::reset(std::size_t pixels, std::size_t capacity, bool lit) {
   pixels_ = pixels;
   capacity_ = capacity;
+  lit_ = lit;
   fit();
   clear();
 }
@@ -77,11 +87,15 @@ void SegmentWindows::grow() {
 
 void SegmentWindows::fit() {
   const std::size_t elements = capacity_ * stride() + pixel_padding;
-  const std::size_t before = segments_.size();
-  if (before >= elements) return;
-  segments_.grow(elements);
-  // Lanes read unused elements of lists, which must be initialized.
-  std::fill(segments_.data() + before, segments_.data() + elements, LatticeSegment{});
+  // Lanes read unused elements of lists, so these have to be numbers.
+  const auto fit = [&](auto& array) {
+    const std::size_t before = array.size();
+    if (before >= elements) return;
+    array.grow(elements);
+    std::fill(array.data() + before, array.data() + elements, std::decay_t<decltype(array[0])>{});
+  };
+  fit(segments_);
+  if (lit_) fit(lights_);
 }
 
 }  // namespace tessera::projection

@@ -17,6 +17,11 @@ struct LatticeSegment {
 };
 static_assert(sizeof(LatticeSegment) == 16);
 
+/// The light on a segment's matter (projection/matter_light.hpp): its color c becomes own * c + white * opacity.
+struct SegmentLight {
+  float own = 1, white = 0;
+};
+
 /// Segments as the rasterizer appends them: structure of arrays with `size` elements, in the order of the cells.
 struct SegmentStream {
   static constexpr std::size_t padding = 64;  ///< elements behind the last that a store of lanes may overwrite
@@ -25,7 +30,10 @@ struct SegmentStream {
   std::vector<std::int32_t> front, back;
   std::vector<std::int32_t> pixel;  ///< row by row in the rectangle
   std::vector<float> scalar_front, scalar_back;
-  /// If surfaces are crossed, for the rasterizer's segments of the current batch of cells: the cell in the batch (low
+  /// If `lit`: each segment's SegmentLight.
+  bool lit = false;
+  std::vector<float> own, white;
+  /// If surfaces are crossed or matter is lit, for the rasterizer's segments of the current batch of cells: the cell in the batch (low
   /// four bits), and column and row of the square.
   bool keeps_hits = false;
   std::vector<std::int32_t> hit;
@@ -33,11 +41,22 @@ struct SegmentStream {
   /// Makes room for `capacity` segments and the padding.
   void reserve(std::size_t capacity) {
     if (keeps_hits && hit.size() < capacity + padding) hit.resize(capacity + padding);
+    if (lit && own.size() < capacity + padding) own.resize(capacity + padding), white.resize(capacity + padding);
     if (front.size() >= capacity + padding) return;
     for (auto* a : {&front, &back, &pixel}) a->resize(capacity + padding);
     for (auto* a : {&scalar_front, &scalar_back}) a->resize(capacity + padding);
   }
-  [[nodiscard]] std::size_t bytes() const { return front.capacity() * 20 + hit.capacity() * 4; }
+  [[nodiscard]] std::size_t bytes() const {
+    return front.capacity() * 20 + hit.capacity() * 4 + own.capacity() * sizeof(SegmentLight);
+  }
+};
+
+/// The memory of SegmentWindows.
+struct WindowLists {
+  std::size_t capacity, stride;
+  LatticeSegment* segments;
+  SegmentLight* lights;  ///< null: not lit
+  std::uint32_t* counts;
 };
 
 /// A short list of segments for each pixel of a rectangle, between rasterizer and compositor. Lists are in order of
@@ -49,14 +68,15 @@ class SegmentWindows {
   static constexpr std::size_t most_pixels = side * side;  ///< of a rectangle
   static constexpr std::size_t pixel_padding = 16;         ///< empty lists behind the last pixel's
 
-  /// Empties the lists and prepares one for each of `pixels` pixels, with room for `capacity` segments.
-  void reset(std::size_t pixels, std::size_t capacity);
+  /// Empties the lists and prepares one for each of `pixels` pixels, with room for `capacity` segments. `lit`: with a
+  /// SegmentLight for each segment.
+  void reset(std::size_t pixels, std::size_t capacity, bool lit = false);
 
   /// Doubles the room of every list; the lists keep their segments. Not beyond most_bytes.
   void grow();
   static constexpr std::size_t most_bytes = 0x7fffffff;  ///< positions in the lists are 32-bit integers
   [[nodiscard]] std::size_t bytes_after_growth() const {
-    return (2 * capacity_ * stride() + pixel_padding) * sizeof(LatticeSegment);
+    return (2 * capacity_ * stride() + pixel_padding) * (sizeof(LatticeSegment) + (lit_ ? sizeof(SegmentLight) : 0));
   }
 
   /// Distributes segments [from, stream.size) to their pixels' lists; stops before one whose list is full. Returns
@@ -64,9 +84,11 @@ class SegmentWindows {
   std::size_t scatter(const SegmentStream& stream, std::size_t from);
 
   /// Appends one segment to a pixel's list; returns false if this is full.
-  bool push(std::size_t pixel, const LatticeSegment& segment) {
+  bool push(std::size_t pixel, const LatticeSegment& segment, const SegmentLight& light = {}) {
     if (counts_[pixel] == capacity_) return false;
-    segments_[counts_[pixel]++ * stride() + pixel] = segment;
+    const std::size_t at = counts_[pixel]++ * stride() + pixel;
+    segments_[at] = segment;
+    if (lit_) lights_[at] = light;
     return true;
   }
   /// Empties the lists.
@@ -77,6 +99,8 @@ class SegmentWindows {
   /// Element k of pixel p's list is segments()[k * stride() + p]: lists of neighbours grow at similar rates, so the
   /// elements written next are close together. Lanes may read (but not use) `pixel_padding` elements beyond the last.
   [[nodiscard]] LatticeSegment* segments() { return segments_.data(); }
+  /// The segments' lights, at the same places; null: not lit.
+  [[nodiscard]] SegmentLight* lights() { return lit_ ? lights_.data() : nullptr; }
   /// Many lists of 64 segments, a power of two apart, would share few sets of a cache.
   [[nodiscard]] std::size_t stride() const { return pixels_ < 64 ? pixels_ : pixels_ + pixel_padding; }
   [[nodiscard]] std::uint32_t count(std::size_t pixel) const { return counts_[pixel]; }
@@ -85,13 +109,15 @@ class SegmentWindows {
   [[nodiscard]] std::uint64_t total() const {
     return std::accumulate(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(pixels_), std::uint64_t{0});
   }
-  [[nodiscard]] std::size_t bytes() const { return segments_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return segments_.bytes() + (lit_ ? lights_.bytes() : 0); }
 
  private:
   void fit();
 
   std::size_t pixels_ = 0, capacity_ = 0;
+  bool lit_ = false;
   LargeArray<LatticeSegment> segments_;
+  LargeArray<SegmentLight> lights_;
   std::vector<std::uint32_t> counts_;
 };
 

@@ -21,7 +21,7 @@ std::size_t sort_group(projection::SegmentWindows&, std::size_t, WindowOrder&) {
 #else
 /// Sorts the group of pixels that begins at `pixel`. Returns the number of lanes.
 std::size_t sort_group(projection::SegmentWindows& windows, std::size_t pixel, WindowOrder& order) {
-  sort_windows(windows.segments() + pixel, windows.stride(), windows.counts() + pixel, order);
+  sort_windows({windows.segments() + pixel, nullptr}, windows.stride(), windows.counts() + pixel, order);
   return hn::Lanes(DI());
 }
 #endif

@@ -13,8 +13,8 @@
 #include "scene/transfer_function.hpp"
 
 /// Light on the matter of a mesh (scene/shading.hpp): applied to segments after they are integrated, with the normal of
-/// their tet. Storing and sorting do not depend on it. Only in double precision.
-namespace tessera::compositor {
+/// their tet. In double precision here; lattice/lattice_lights-inl.h has it for the lattice.
+namespace tessera::projection {
 
 /// The normals of the tets of segments, by the tet number in the segment: of length 1, or 0 where the field has no
 /// gradient. Floats, so that local and received normals are the same.
@@ -46,12 +46,15 @@ class SentNormals final : public CellNormals {
   }
   void set(std::uint32_t tet, const glm::vec3& normal) { normals_.insert_or_assign(tet, normal); }
   /// Removes the normals of tets without segments, once enough have accumulated.
-  void forget(const projection::RaySegments& left);
+  void forget(const RaySegments& left);
 
  private:
   std::unordered_map<std::uint32_t, glm::vec3> normals_;
   std::size_t kept_ = 0;  ///< the number after the last removal
 };
+
+/// The function with every color replaced by an upper bound of what light makes of it.
+scene::TransferFunction brightest(const scene::Shading& shading, const scene::TransferFunction& function);
 
 /// The light of a frame.
 class MatterLight {
@@ -66,8 +69,12 @@ class MatterLight {
   [[nodiscard]] Light on(const glm::vec3& normal, const glm::dvec3& ray) const;
   /// An upper bound of the colours that become of colours up to `color`.
   [[nodiscard]] double brightest(double color) const;
-  /// The function with every colour replaced by its upper bound.
-  [[nodiscard]] scene::TransferFunction brightest(const scene::TransferFunction& function) const;
+  [[nodiscard]] const scene::Shading& shading() const { return shading_; }
+  [[nodiscard]] const glm::dvec3& to_light() const { return to_light_; }  ///< world space, of length 1
+  /// The shininess if it is a whole number; otherwise -1.
+  [[nodiscard]] int whole_shininess() const { return whole_shininess_; }
+  /// A shorter halfway vector than this has no direction: the light is straight behind.
+  static constexpr double nothing = 1e-12;
 
  private:
   scene::Shading shading_;
@@ -75,4 +82,4 @@ class MatterLight {
   int whole_shininess_ = -1;
 };
 
-}  // namespace tessera::compositor
+}  // namespace tessera::projection

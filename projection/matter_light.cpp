@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compositor/matter_light.hpp"
+#include "projection/matter_light.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@
 
 #include "projection/surface_crossings.hpp"
 
-namespace tessera::compositor {
+namespace tessera::projection {
 namespace {
 
-constexpr double nothing = 1e-12;  // as in scene/shading.hpp
+constexpr double nothing = MatterLight::nothing;  // scene/shading.hpp has the same for gradients
 
 /// Takes a third of the time of std::pow.
 double whole_power(double base, int exponent) {
@@ -22,6 +22,10 @@ double whole_power(double base, int exponent) {
   for (; exponent > 0; exponent /= 2, base *= base)
     if (exponent % 2 != 0) result *= base;
   return result;
+}
+
+double brightest_color(const scene::Shading& shading, double color) {
+  return color * std::max(shading.ambient + shading.diffuse, 1.0) + shading.specular;
 }
 
 }  // namespace
@@ -36,10 +40,10 @@ glm::vec3 MeshNormals::of(std::uint32_t tet) const {
     const glm::dvec3 &p = mesh_.positions[i], &q = mesh_.positions[j];
     return std::tuple(p.x, p.y, p.z, mesh_.scalars[i]) < std::tuple(q.x, q.y, q.z, mesh_.scalars[j]);
   });
-  return {projection::unit(projection::gradient_direction(mesh_, corners))};
+  return {unit(gradient_direction(mesh_, corners))};
 }
 
-void SentNormals::forget(const projection::RaySegments& left) {
+void SentNormals::forget(const RaySegments& left) {
   constexpr std::size_t few = 1 << 14;
   if (normals_.size() < 2 * kept_ + few) return;
   std::unordered_map<std::uint32_t, glm::vec3> needed;
@@ -68,15 +72,13 @@ MatterLight::Light MatterLight::on(const glm::vec3& normal, const glm::dvec3& ra
   return {shading_.ambient + shading_.diffuse * n_l, shading_.specular * shine};
 }
 
-double MatterLight::brightest(double color) const {
-  return color * std::max(shading_.ambient + shading_.diffuse, 1.0) + shading_.specular;
-}
+double MatterLight::brightest(double color) const { return brightest_color(shading_, color); }
 
-scene::TransferFunction MatterLight::brightest(const scene::TransferFunction& function) const {
+scene::TransferFunction brightest(const scene::Shading& shading, const scene::TransferFunction& function) {
   std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
   for (scene::Knot& knot : knots)
-    for (int c = 0; c < 3; ++c) knot.color[c] = brightest(knot.color[c]);
+    for (int c = 0; c < 3; ++c) knot.color[c] = brightest_color(shading, knot.color[c]);
   return scene::TransferFunction(std::move(knots));
 }
 
-}  // namespace tessera::compositor
+}  // namespace tessera::projection
