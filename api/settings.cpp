@@ -21,7 +21,7 @@ inline namespace v0_1 {
 Exchange exchange_of(const Settings& settings, bool deep) {
   if (settings.ranks.exchange) return *settings.ranks.exchange;
   const bool is_near = settings.integrator.kind == IntegratorKind::automatic &&
-                       !scene::error_budget::runs_keep(settings.integrator.accuracy);
+                       !scene::error_budget::runs_keep(settings.integrator.accuracy, settings.mesh.shading.has_value());
   const bool wants_segments =
       settings.mesh.rasterizer == Rasterizer::scanline || deep || !settings.mesh.device.backends.empty() || is_near;
   return wants_segments ? Exchange::segments : Exchange::runs;

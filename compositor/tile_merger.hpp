@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "projection/matter_light.hpp"
 #include "exchange/wire.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/footprint.hpp"
+#include "projection/matter_light.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/image.hpp"
@@ -48,8 +48,8 @@ struct MergeContext {
   std::atomic<std::uint64_t>* segments = nullptr;  ///< counts segments that the device makes of cells; may be null
   /// Set to true if runs of a pixel overlap, so that no order of them is right; may be null.
   std::atomic<bool>* overlapping = nullptr;
-  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
-  const projection::MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
+  const scene::SurfaceSet* surfaces = nullptr;     ///< in the volume; null: none
+  const projection::MatterLight* light = nullptr;  ///< on the matter of a mesh, by the CPU; null: none
 
   /// An upper bound of the light behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {

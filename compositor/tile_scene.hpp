@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "projection/matter_light.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
+#include "projection/matter_light.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/image.hpp"
 #include "scene/lattice.hpp"

@@ -75,7 +75,8 @@ class PixelGroup {
 
   /// Sorts the lists' slots. Returns the number of rows, which is the length of the longest list.
   HWY_INLINE std::size_t sort() {
-    return sorting::HWY_NAMESPACE::sort_windows({list_, lights_}, windows_.stride(), windows_.counts() + pixel_, state_.order);
+    return sorting::HWY_NAMESPACE::sort_windows({list_, lights_}, windows_.stride(), windows_.counts() + pixel_,
+                                                state_.order);
   }
 
   /// Loads the segments of the rows [from, to) before `final_step`, in open pixels; for runs, it stores where they end.
@@ -110,7 +111,7 @@ class PixelGroup {
       s.front = IfThenElse(takes, front, none);
       if (HWY_UNLIKELY(lights_ != nullptr)) {
         // A light is half as long as a segment.
-        const VI slots = Load(d, state_.order.slots.data() + row * lanes);
+        const VI slots = LoadU(d, state_.order.slots.data() + row * lanes);
         const VI place = ShiftRight<1>(slots) + Iota(d, 0) * Set(d, static_cast<std::int32_t>(sizeof *lights_));
         Store(GatherOffset(df, &lights_->own, place), df, light_.own + (row - from) * lanes);
         Store(GatherOffset(df, &lights_->white, place), df, light_.white + (row - from) * lanes);
@@ -205,7 +206,7 @@ class PixelGroup {
   std::size_t pixel_;
   projection::LatticeSegment* list_;
   projection::SegmentLight* lights_;  ///< null: not lit
-  VI done_ = Zero(DI());  ///< segments of each lane that were final
+  VI done_ = Zero(DI());              ///< segments of each lane that were final
 };
 
 template <TableForm form>

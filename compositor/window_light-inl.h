@@ -159,8 +159,7 @@ struct LightRows {
       if (!lit[row]) continue;
       const std::size_t at = row * hn::Lanes(d);
       const VF of_color = Load(d, own + at), shine = Load(d, white + at) * Load(d, alpha + at);
-      for (float* color : {red + at, green + at, blue + at})
-        Store(MulAdd(of_color, Load(d, color), shine), d, color);
+      for (float* color : {red + at, green + at, blue + at}) Store(MulAdd(of_color, Load(d, color), shine), d, color);
     }
   }
 

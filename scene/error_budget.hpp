@@ -22,9 +22,10 @@ constexpr double least_accuracy = 1e-6;
 
 // Errors of fixed size.
 constexpr double float_picture = 0x1p-24;
-constexpr double lane_integrals = 5e-7;  ///< of segments in float lanes, on the integer lattice
-constexpr double lane_rays = 1e-6;       ///< of grids' rays in float lanes, in addition to their recorded bounds
-constexpr double runs = 2e-6;            ///< Exchange::runs: light and opacity of runs are floats
+constexpr double lane_integrals = 5e-7;      ///< of segments in float lanes, on the integer lattice
+constexpr double lane_lights = 4 * 0x1p-24;  ///< of shaded segments: light is a float, and so are its products
+constexpr double lane_rays = 1e-6;           ///< of grids' rays in float lanes, in addition to their recorded bounds
+constexpr double runs = 2e-6;                ///< Exchange::runs: light and opacity of runs are floats
 
 // Shares of the accuracy.
 /// Contribution behind the point where a ray, or a segment (absorption), is ended.
@@ -56,11 +57,12 @@ constexpr double deep_merging(double accuracy) { return accuracy / 4; }
 constexpr double deep_alpha(double accuracy) { return accuracy / 16; }
 
 // Methods of rendering and their total errors; `brightest` is the most light that a ray can have, at least one.
-constexpr double mesh_on_lattice(double accuracy, double brightest = 1) {
-  return lattice_scalars(accuracy) + ended(accuracy) + brightest * (lane_integrals + float_picture);
+constexpr double mesh_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
+  return lattice_scalars(accuracy) + ended(accuracy) +
+         brightest * (lane_integrals + (shaded ? lane_lights : 0) + float_picture);
 }
-constexpr double exact_mesh_on_lattice(double brightest = 1) {
-  return lattice_scalars_of_exact + brightest * (lane_integrals + float_picture);
+constexpr double exact_mesh_on_lattice(double brightest = 1, bool shaded = false) {
+  return lattice_scalars_of_exact + brightest * (lane_integrals + (shaded ? lane_lights : 0) + float_picture);
 }
 constexpr double mesh_in_double(double accuracy, double brightest = 1) {
   return ended(accuracy) + thick_pieces(accuracy) + dark_pieces(accuracy) + brightest * float_picture;
@@ -80,8 +82,8 @@ constexpr double deep(double accuracy) {
 }
 
 /// Whether the error of Exchange::runs also fits.
-constexpr bool runs_keep(double accuracy) {
-  const double lattice = mesh_on_lattice(accuracy);
+constexpr bool runs_keep(double accuracy, bool shaded = false) {
+  const double lattice = mesh_on_lattice(accuracy, 1, shaded);
   return (lattice <= accuracy ? lattice : mesh_in_double(accuracy)) + runs <= accuracy;
 }
 

@@ -85,9 +85,9 @@ HWY_NOINLINE inline void sort_long(const PixelList& list, std::size_t stride, st
   for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
 }
 
-/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `lists` begins with
-/// the first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns the number
-/// of rows, which is the length of the longest list.
+/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `lists` begins
+/// with the first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns
+/// the number of rows, which is the length of the longest list.
 HWY_INLINE std::size_t sort_windows(const PixelList& lists, std::size_t stride, const std::uint32_t* counts,
                                     WindowOrder& order) {
   const projection::LatticeSegment* const list = lists.segments;
@@ -102,7 +102,8 @@ HWY_INLINE std::size_t sort_windows(const PixelList& lists, std::size_t stride, 
   if (order.keys.size() < rows * lanes) order.keys.resize(rows * lanes), order.slots.resize(rows * lanes);
   std::int32_t* slots = order.slots.data();
   if (chunks > static_cast<std::size_t>(most_sort_chunks)) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) sort_long(lists.of_lane(lane), stride, counts[lane], lanes, slots + lane);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      sort_long(lists.of_lane(lane), stride, counts[lane], lanes, slots + lane);
     return most;
   }
 

@@ -41,7 +41,8 @@ DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scen
     : scene_(scene),
       picture_(scene, false),
       window_(window),
-      cutter_(scene.light != nullptr ? projection::brightest(scene.light->shading(), function) : function, emission, accuracy),
+      cutter_(scene.light != nullptr ? projection::brightest(scene.light->shading(), function) : function, emission,
+              accuracy),
       accuracy_(accuracy),
       collector_(&collector) {}
 

@@ -258,6 +258,11 @@ void render_tiles(const FrameTask& frame, const scene::Image* image, projection:
       tbb::simple_partitioner());
 }
 
+/// The frame's function, with the brightest colors that light on matter may make.
+scene::TransferFunction brightest(const FrameTask& frame) {
+  return frame.light != nullptr ? projection::brightest(frame.light->shading(), *frame.function) : *frame.function;
+}
+
 /// Statistics of this process's share and its workers.
 FrameStatistics count(const FrameTask& frame, const TeamTask& team, const projection::PreparedMesh& mesh,
                       const projection::TileLists& lists, const Workers& workers) {
@@ -340,7 +345,7 @@ FrameStatistics FrameProjector::project_in_arena(const FrameTask& frame, const T
         {lattice_vertices_.data(), lattice_vertices_.size()},
         *frame.lattice,
         frame.space->perspective(),
-        depth_limits_of(*frame.space, *frame.lattice, *frame.function, settings_.emission, longest_ray(frame)),
+        depth_limits_of(*frame.space, *frame.lattice, brightest(frame), settings_.emission, longest_ray(frame)),
         culled.steps,
         context.at_steps,
         prepared_->mesh().association == scene::Association::point ? frame.light : nullptr,
@@ -404,7 +409,7 @@ FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projec
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
   if (exact || projected.iso != nullptr) {
-    if (exact) steps = projection::steps_of(*frame.function, settings_.emission, longest_ray(frame));
+    if (exact) steps = projection::steps_of(brightest(frame), settings_.emission, longest_ray(frame));
     steps = projection::with_surfaces(std::move(steps), projected.iso);
     at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray(frame), frame.lattice, stop, team.team);
   }

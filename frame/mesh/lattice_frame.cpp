@@ -23,10 +23,10 @@ double most_error_of(const scene::Integrator& integrator) {
   return automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
 }
 /// Whether float lanes are accurate enough if a ray may have this brightness.
-bool lanes_suffice(const scene::Integrator& integrator, double brightest) {
+bool lanes_suffice(const scene::Integrator& integrator, double brightest, bool shaded) {
   return integrator.kind == scene::IntegratorKind::automatic
-             ? budget::mesh_on_lattice(integrator.accuracy, brightest) <= integrator.accuracy
-             : budget::exact_mesh_on_lattice(brightest) <= budget::exact_mesh;
+             ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded) <= integrator.accuracy
+             : budget::exact_mesh_on_lattice(brightest, shaded) <= budget::exact_mesh;
 }
 // Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
 // most D int T dt over the ray's path through the piece, times the largest contribution behind it. Transmittance T
@@ -94,7 +94,8 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   const bool independent = settings.emission == scene::Emission::independent;
   const double most_error = most_error_of(settings.integrator);
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
-  if (!lanes_suffice(settings.integrator, scene::most_light(function, settings.emission, length))) return std::nullopt;
+  if (!lanes_suffice(settings.integrator, scene::most_light(function, settings.emission, length), shading.has_value()))
+    return std::nullopt;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;

@@ -10,12 +10,12 @@
 #include "compositor/deep/deep_collector.hpp"
 #include "compositor/deep/deep_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
-#include "projection/matter_light.hpp"
 #include "compositor/picture_sink.hpp"
 #include "frame/mesh/boundary_faces.hpp"
 #include "frame/mesh/frame_projector.hpp"
 #include "frame/mesh/lattice_frame.hpp"
 #include "integrals/segment_integrator.hpp"
+#include "projection/matter_light.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/threads.hpp"
 

@@ -86,7 +86,7 @@ void check(const DistributedSettings& settings) {
                                        settings.frame.peel ? "`peel`" : "a deep image"));
   const scene::Integrator& integrator = settings.render.integrator;
   if (settings.exchange == Exchange::runs && integrator.kind == scene::IntegratorKind::automatic &&
-      !scene::error_budget::runs_keep(integrator.accuracy))
+      !scene::error_budget::runs_keep(integrator.accuracy, settings.render.mesh.shading.has_value()))
     throw scene::bad_input(
         fmt::format("`exchange` runs: `accuracy` {} leaves no room for the {} that runs may err; use "
                     "`exchange` segments",

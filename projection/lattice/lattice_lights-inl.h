@@ -4,7 +4,8 @@
 //
 // What      SegmentLight of Blinn and Phong's model (tessera/shading.hpp): own = ambient + diffuse |n l| and
 //           white = specular |n h|^shininess, with the normal n of the segment's cell, the light l, and the halfway
-//           vector h of light and ray. The compositor applies it to the segment's integral (compositor/window_kernel.hpp).
+//           vector h of light and ray. The compositor applies it to the segment's integral
+//           (compositor/window_kernel.hpp).
 // How       Light is infinitely far away, so `own` is a number of the cell. Orthographic rays have one direction, and
 //           `white` is one, too; with perspective it is computed by segment.
 // Accuracy  Double precision, rounded to floats (scene/error_budget.hpp).
@@ -76,7 +77,7 @@ class SegmentLights {
     const scene::Shading& shading = light_.shading();
     const Vectors halfway{Set(d, halfway_.x), Set(d, halfway_.y), Set(d, halfway_.z)};
     with_normals(view_, batch, cells,
-                 [&](const std::size_t* of_lane, std::size_t count, const Vectors& normal, const VD (&scalar)[4])
+                 [&](const std::size_t* of_lane, std::size_t count, const Vectors& normal, const VD(&scalar)[4])
                      HWY_ATTR {
                        const VD one = Set(d, 1);
                        const VD low = Min(Min(scalar[0], scalar[1]), Min(scalar[2], scalar[3])),

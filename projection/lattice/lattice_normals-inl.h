@@ -92,8 +92,8 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[
   return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
 
-/// Calls take(numbers, count, normal, scalar) for groups of some of a batch's cells, a bit each: `count` lanes, with the
-/// cells' numbers in the batch, their normals and their corners' scalars.
+/// Calls take(numbers, count, normal, scalar) for groups of some of a batch's cells, a bit each: `count` lanes, with
+/// the cells' numbers in the batch, their normals and their corners' scalars.
 template <class Take>
 HWY_INLINE void with_normals(const LatticeView& view, const CellBatch& batch, unsigned cells, const Take& take) {
   const DD d;
@@ -133,7 +133,7 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
   const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
   const Vectors ray{Set(d, towards.x), Set(d, towards.y), Set(d, towards.z)};
   with_normals(view, batch, cells,
-               [&](const std::size_t* of_lane, std::size_t count, const Vectors& normal, const VD (&)[4]) HWY_ATTR {
+               [&](const std::size_t* of_lane, std::size_t count, const Vectors& normal, const VD(&)[4]) HWY_ATTR {
                  const VD one = Set(d, 1), zero = Zero(d);
                  const VD least = IfThenElse(largest(normal) > zero, zero, one);
                  alignas(64) double found[5][MaxLanes(DD())];

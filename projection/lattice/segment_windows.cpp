@@ -68,8 +68,7 @@ namespace tessera::projection {
 HWY_EXPORT(scatter);
 
 std::size_t SegmentWindows::scatter(const SegmentStream& stream, std::size_t from) {
-  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from,
-                                       {capacity_, stride(), segments_.data(), lights(), counts_.data()});
+  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from, {capacity_, stride(), segments_.data(), lights(), counts_.data()});
 }
 
 void SegmentWindows::reset(std::size_t pixels, std::size_t capacity, bool lit) {

@@ -33,8 +33,8 @@ struct SegmentStream {
   /// If `lit`: each segment's SegmentLight.
   bool lit = false;
   std::vector<float> own, white;
-  /// If surfaces are crossed or matter is lit, for the rasterizer's segments of the current batch of cells: the cell in the batch (low
-  /// four bits), and column and row of the square.
+  /// If surfaces are crossed or matter is lit, for the rasterizer's segments of the current batch of cells: the cell in
+  /// the batch (low four bits), and column and row of the square.
   bool keeps_hits = false;
   std::vector<std::int32_t> hit;
 

@@ -84,6 +84,11 @@ struct RandomRays {
       ++batch.size;
     }
     integrator.integrate(batch);
+    for (std::size_t k = 0; lit && k < ray.size(); ++k) {
+      const projection::SegmentLight light = light_of(ray[k]);
+      const double shine = light.white * -std::expm1(-batch.optical_depth[k]);
+      for (auto* color : {&batch.red, &batch.green, &batch.blue}) (*color)[k] = double{light.own} * (*color)[k] + shine;
+    }
     std::vector<Run> made;
     Run run{pixel};
     double transmittance = 1;
@@ -108,6 +113,13 @@ struct RandomRays {
     return made;
   }
 
+  /// Some light for each segment, the same for equal ones.
+  [[nodiscard]] static projection::SegmentLight light_of(const LatticeSegment& segment) {
+    const auto bits =
+        static_cast<std::uint32_t>(segment.front) * 2654435761u ^ static_cast<std::uint32_t>(segment.back);
+    return {static_cast<float>(bits & 0xff) / 256, static_cast<float>(bits >> 8 & 0xff) / 1024};
+  }
+
   [[nodiscard]] std::size_t total() const {
     std::size_t sum = 0;
     for (const auto& ray : rays) sum += ray.size();
@@ -120,6 +132,7 @@ struct RandomRays {
   integrals::SegmentIntegrator integrator;
   projection::PixelSpace space;
   std::vector<std::vector<LatticeSegment>> rays;  ///< by pixel, sorted
+  bool lit = false;                               ///< by light_of()
 
  private:
   static scene::Camera camera(bool perspective) {

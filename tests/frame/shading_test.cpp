@@ -90,7 +90,6 @@ TEST(MeshShading, LeavesWhatHasNoGradientAsItIs) {
   for (const scene::TetMesh& mesh : {flat, nearly, datasets::with_cell_data(datasets::cube(4))}) {
     const Dataset data = Dataset::of(datasets::arrays_of(mesh));
     Settings dark = shaded();
-    dark.use.lattice = false;  // as for shaded ones
     dark.mesh.shading.reset();
     EXPECT_EQ(Session(data, shaded()).render(view, fog).image.rgba, Session(data, dark).render(view, fog).image.rgba);
   }
@@ -149,13 +148,18 @@ TEST(MeshShading, OfSeveralRanksMatchesOne) {
     settings.surfaces.iso = {{0.5, {}, 0.3}};
     settings.threads = 1;
     Session alone(Dataset::of(datasets::arrays_of(mesh)), settings);
-    const RenderedFrame expected = alone.render(view, function, {.deep = true});
+    const RenderedFrame of_lanes = alone.render(view, function),
+                        of_depth = alone.render(view, function, {.deep = true});
+    EXPECT_TRUE(of_lanes.statistics.on_lattice);
+    EXPECT_FALSE(of_depth.statistics.on_lattice);
+    EXPECT_LT(difference(of_lanes.image, of_depth.image), 2e-5);
     settings.mesh.shading.reset();
-    EXPECT_GT(difference(Session(alone.dataset(), settings).render(view, function).image, expected.image), 0.05);
+    EXPECT_GT(difference(Session(alone.dataset(), settings).render(view, function).image, of_lanes.image), 0.05);
     settings.mesh.shading.emplace();
     for (const auto exchange : {Exchange::segments, Exchange::runs})
       for (const bool deep : {false, true}) {
         if (deep && exchange == Exchange::runs) continue;
+        const RenderedFrame& expected = deep ? of_depth : of_lanes;
         run_ranks(3, [&](const Communicator& communicator) {
           Settings mine = settings;
           mine.ranks.exchange = exchange;

@@ -19,18 +19,20 @@ TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
     EXPECT_LE(budget::mesh_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::grid_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::deep(accuracy), accuracy) << accuracy;
-    const double lattice = budget::mesh_on_lattice(accuracy);
-    const double mesh = lattice <= accuracy ? lattice : budget::mesh_in_double(accuracy);
-    if (budget::runs_keep(accuracy)) {
-      EXPECT_LE(mesh + budget::runs, accuracy) << accuracy;
+    for (const bool shaded : {false, true}) {
+      const double lattice = budget::mesh_on_lattice(accuracy, 1, shaded);
+      const double mesh = lattice <= accuracy ? lattice : budget::mesh_in_double(accuracy);
+      if (budget::runs_keep(accuracy, shaded)) {
+        EXPECT_LE(mesh + budget::runs, accuracy) << accuracy;
+      }
     }
   }
-  EXPECT_LE(budget::exact_mesh_on_lattice() + budget::runs, budget::exact_mesh);
+  EXPECT_LE(budget::exact_mesh_on_lattice(1, true) + budget::runs, budget::exact_mesh);
   EXPECT_LE(budget::exact_grid_in_lanes(), budget::exact_grid);
 }
 
 TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
-  EXPECT_LE(budget::mesh_on_lattice(1e-5), 1e-5);
+  EXPECT_LE(budget::mesh_on_lattice(1e-5, 1, true), 1e-5);
   EXPECT_GT(budget::mesh_on_lattice(2e-6), 2e-6);
   EXPECT_LE(budget::grid_in_lanes(1e-5), 1e-5);
   EXPECT_GT(budget::grid_in_lanes(5e-6), 5e-6);
