@@ -6,7 +6,7 @@
 //   lattice_bench --benchmark_filter=composite/.*AVX3
 //
 // Mesh: cube 32 (TESSERA_BENCH_CUBE=n for another); view and transfer function are those of all performance figures;
-// the cell size in pixels determines the image size. For the machine's own limits see machine_bench.
+// the cell size in pixels determines the image size.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
