@@ -117,17 +117,7 @@ def own_tets(path, q, field, on_cells):
     split.Update()
     grid = split.GetOutput()
     choose_field(grid, field, on_cells)
-    return without_flat(grid, on_cells)
-
-
-def without_flat(grid, on_cells):
-    """The grid without tets of exactly zero volume (collapsed cells): VTK 9.1's ray caster may crash on them."""
-    p = vtk_to_numpy(grid.GetPoints().GetData()).astype(np.float64)
-    c = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
-    a, b, d = (p[c[:, i]] - p[c[:, 0]] for i in (1, 2, 3))
-    keep = np.einsum("ij,ij->i", np.cross(a, b), d) != 0
-    scalars = vtk_to_numpy((grid.GetCellData() if on_cells else grid.GetPointData()).GetArray("f"))
-    return vtk_raycast.grid_of(p, c[keep], scalars[keep] if on_cells else scalars, on_cells)
+    return vtk_raycast.without_flat(grid, on_cells)
 
 
 def choose_field(grid, label, on_cells):
@@ -238,7 +228,7 @@ def compare(args, name):
     tessera(args, "convert", mesh, out(".vtu"), *extra)
     ours = vtk_raycast.read_pfm(out(".pfm"))
 
-    camera = {k: v if isinstance(v, list) else [v] for k, v in view.items()}
+    camera = vtk_raycast.camera_of(view)
     same = vtk_raycast.read_mesh(str(out(".vtu")))
     choose_field(same, field, on_cells)
     own = own_tets(mesh, q, field, on_cells)

@@ -77,7 +77,7 @@ def generated(args, file, kind, *parameters):
 
 
 def render(args, data, *words, ranks=1, picture="picture.pfm", program=None):
-    """The report of `tessera render`, with the run as its `run`. Pixels that --verify finds too far off do not count as a failure."""
+    """The report of `tessera render`, which report.json in --work has too, with the run as its `run`. Pixels that --verify finds too far off do not count as a failure."""
     report = args.work / "report.json"
     done = run(program or args.tessera, "render", data, "-o", args.work / picture, "--report", report, "--quiet", *words, ranks=ranks, good=(0, 4))
     return json.loads(report.read_text()) | {"run": done}
@@ -156,9 +156,12 @@ class Section:
         self.blocks.append(words)
         print(f"\n{words}", flush=True)
 
+    def made(self):
+        return f"{datetime.date.today().isoformat()}, commit {commit()}: {machine()}, load {self.load:.1f}/{os.getloadavg()[0]:.1f}."
+
     def keep(self, note="", made=""):
-        """Writes the section if --write is given; the caption: `made` (default: date, commit, machine, load), command, note."""
-        made = made or f"{datetime.date.today().isoformat()}, commit {commit()}: {machine()}, load {self.load:.1f}/{os.getloadavg()[0]:.1f}."
+        """Writes the section if --write is given; the caption is `made` (default: date, commit, machine, load), the command and the note."""
+        made = made or self.made()
         if self.args.write:
             path = STORE / (self.name.split()[0].partition(".")[0] + ".json")
             sections = json.loads(path.read_text()) if path.exists() else {}

@@ -22,9 +22,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import numpy as np
 import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 import vtk_raycast
 
@@ -37,28 +35,6 @@ def tessera(args, *words):
     done = subprocess.run([str(args.tessera), *map(str, words)], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"vtk_chart.py: tessera {' '.join(map(str, words))}\n{done.stderr.strip()}")
-
-
-def mesh_of(path, on_cells):
-    """The tets except those with zero volume, on which VTK 9.1's caster may crash; they are invisible."""
-    grid = vtk_raycast.read_mesh(str(path))
-    p = vtk_to_numpy(grid.GetPoints().GetData()).astype(np.float64)
-    c = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
-    s = vtk_to_numpy((grid.GetCellData() if on_cells else grid.GetPointData()).GetArray(0)).astype(np.float64)
-    a, b, d = (p[c[:, i]] - p[c[:, 0]] for i in (1, 2, 3))
-    keep = np.einsum("ij,ij->i", np.cross(a, b), d) != 0
-    return vtk_raycast.grid_of(p, c[keep], s[keep] if on_cells else s, on_cells)
-
-
-def image_of(path):
-    reader = vtk.vtkXMLImageDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    image = reader.GetOutput()
-    if image.GetPointData().GetNumberOfArrays() == 0:
-        sys.exit("vtk_chart.py: cell data of a grid have no peer in VTK")
-    image.GetPointData().SetActiveScalars(image.GetPointData().GetArrayName(0))
-    return image
 
 
 def measured(render, seconds, picture):
@@ -115,14 +91,14 @@ def main():
         scene = json.loads((folder / "scene.json").read_text())
         if scene["method"]["emission"] != "absorption":
             sys.exit("vtk_chart.py: VTK supports emission by absorption only")
-        camera = {k: v if isinstance(v, list) else [v] for k, v in scene["frames"][0]["view"].items()}
+        camera = vtk_raycast.camera_of(scene["frames"][0]["view"])
         knots = scene["transfer_function"]["knots"]
         repeat = int(args.repeat or 5)
         family = f"VTK {vtk.VTK_VERSION}"
         if "mesh" in scene:
             tessera(args, "convert", args.input, folder / "tets.vtu", *data, "--quiet")
             on_cells = scene["mesh"]["field"]["association"] == "cell"
-            grid = mesh_of(folder / "tets.vtu", on_cells)
+            grid = vtk_raycast.without_flat(vtk_raycast.read_mesh(str(folder / "tets.vtu")), on_cells)
             share = args.peer_seconds / len(MESHES)
             word = {"bunyk": "Bunyk", "zsweep": "ZSweep"}
             methods = [(f"{family} {word[c]}, {i}", f"VTK {word[c]}, {i}",
@@ -130,7 +106,7 @@ def main():
                        for c, i in MESHES]
         else:
             tessera(args, "convert", args.input, folder / "samples.vti", *data, "--quiet")
-            image = image_of(folder / "samples.vti")
+            image = vtk_raycast.read_grid(folder / "samples.vti")
             share = args.peer_seconds / len(STEPS)
             methods = [(f"{family} fixed point", f"VTK fixed point, step {s:g}",
                         lambda s=s: vtk_raycast.render_grid(image, camera, knots, s, repeat, args.peer_threads, share)) for s in STEPS]

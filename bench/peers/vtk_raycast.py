@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Renders a tetrahedral mesh or a regular grid with VTK's software ray casters, timed.
 
-    xvfb-run -a /usr/bin/python3 vtk_raycast.py MESH --camera CAM.txt --transfer-function TF.txt [--caster bunyk|zsweep]
-        [--integrator full|partial|linear|homogeneous] [--repeat K] [--threads T] [--output OUT.pfm] [--json OUT.json]
+    xvfb-run -a /usr/bin/python3 vtk_raycast.py DATA REPORT.json PICTURE.pfm [--integrator partial] [--step 1] [--repeat K] [--threads T]
 
-MESH is .tets or .vtu (linear tets only); camera and transfer function are Tessera's text files. Needs python3-vtk9,
-python3-numpy and a display (xvfb-run). Also a module: compare_vtk.py and vtk_chart.py call `render` and `render_grid`.
+DATA is .tets or .vtu (linear tets only) or .vti; view and transfer function are those of a report of `tessera render`, whose image is PICTURE. Prints the
+frames' times and the difference from that image as JSON. Needs python3-vtk9, python3-numpy and a display (xvfb-run). Also a module: compare_vtk.py and
+vtk_chart.py call `render` and `render_grid`.
 
 Differences of VTK, which are measured as they are: the image is 8-bit. With `full` the integral comes from a table
 (vtkUnstructuredGridPreIntegration), with `partial` from Moreland and Angel's formula and tables for opacity
@@ -18,6 +18,7 @@ the camera, so that nothing is reused except what VTK caches by itself (the face
 """
 import argparse
 import json
+import sys
 import time
 
 import numpy as np
@@ -25,20 +26,20 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 
-def words(path):
-    """Lines of words, comments removed."""
-    lines = (line.split("#")[0].split() for line in open(path))
-    return [line for line in lines if line]
+def camera_of(view):
+    """A report's view with a list for each value."""
+    return {name: value if isinstance(value, list) else [value] for name, value in view.items()}
 
 
-def read_camera(path):
-    camera = {w[0]: [float(x) for x in w[1:]] for w in words(path)}
-    camera.setdefault("view_up", [0.0, 1.0, 0.0])
-    return camera
-
-
-def read_knots(path):
-    return [[float(x) for x in w] for w in words(path)]
+def read_grid(path):
+    reader = vtk.vtkXMLImageDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    if image.GetPointData().GetNumberOfArrays() == 0:
+        sys.exit("vtk_raycast.py: cell data of a grid have no peer in VTK")
+    image.GetPointData().SetActiveScalars(image.GetPointData().GetArrayName(0))
+    return image
 
 
 def read_mesh(path):
@@ -70,6 +71,16 @@ def grid_of(points, corners, scalars, on_cells=False):
     array.SetName("f")
     (grid.GetCellData() if on_cells else grid.GetPointData()).SetScalars(array)
     return grid
+
+
+def without_flat(grid, on_cells=False):
+    """The grid with its first array, without tets of exactly zero volume (collapsed cells), which are invisible: VTK 9.1's ray caster may crash on them."""
+    points = vtk_to_numpy(grid.GetPoints().GetData()).astype(np.float64)
+    corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    scalars = vtk_to_numpy((grid.GetCellData() if on_cells else grid.GetPointData()).GetArray(0)).astype(np.float64)
+    a, b, c = (points[corners[:, i]] - points[corners[:, 0]] for i in (1, 2, 3))
+    keep = np.einsum("ij,ij->i", np.cross(a, b), c) != 0
+    return grid_of(points, corners[keep], scalars[keep] if on_cells else scalars, on_cells)
 
 
 INTEGRATORS = {"full": vtk.vtkUnstructuredGridPreIntegration, "partial": vtk.vtkUnstructuredGridPartialPreIntegration,
@@ -233,27 +244,25 @@ def read_pfm(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="VTK's unstructured-grid ray caster, timed")
-    parser.add_argument("mesh")
-    parser.add_argument("--camera", required=True)
-    parser.add_argument("--transfer-function", required=True)
-    parser.add_argument("--caster", choices=["bunyk", "zsweep"], default="bunyk")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for word in ("data", "report", "picture"):
+        parser.add_argument(word)
     parser.add_argument("--integrator", choices=list(INTEGRATORS), default="partial")
+    parser.add_argument("--step", type=float, default=1.0)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--threads", type=int)
-    parser.add_argument("--output")
-    parser.add_argument("--json")
     args = parser.parse_args()
-    grid = read_mesh(args.mesh)
-    rgb, first, seconds = render(grid, read_camera(args.camera), read_knots(args.transfer_function), args.integrator,
-                                 args.repeat, args.threads, caster=args.caster)
-    figures = {"renderer": f"VTK {vtk.VTK_VERSION} {args.caster} ray caster, {args.integrator}",
-               "tets": grid.GetNumberOfCells(), "first_ms": 1e3 * first, "frame_ms": [1e3 * s for s in seconds]}
-    if args.output:
-        write_pfm(args.output, rgb)
-    if args.json:
-        json.dump(figures, open(args.json, "w"), indent=1)
-    print(json.dumps(figures))
+    report = json.load(open(args.report))
+    camera, knots = camera_of(report["frames"][0]["view"]), report["transfer_function"]["knots"]
+    if args.data.endswith(".vti"):
+        rgb, _, seconds = render_grid(read_grid(args.data), camera, knots, args.step, args.repeat, args.threads)
+        name = f"fixed point, step {args.step:g}"
+    else:
+        rgb, _, seconds = render(read_mesh(args.data), camera, knots, args.integrator, args.repeat, args.threads)
+        name = f"bunyk ray caster, {args.integrator}"
+    apart = np.abs(rgb - read_pfm(args.picture)).astype(np.float64)
+    print(json.dumps({"renderer": f"VTK {vtk.VTK_VERSION} {name}", "frame_ms": [1e3 * s for s in seconds], "max_error": float(apart.max()),
+                      "rms_error": float(np.sqrt((apart ** 2).mean()))}))
 
 
 if __name__ == "__main__":
