@@ -170,6 +170,14 @@ class Section:
             update()
 
 
+def measure_parts(args, parts):
+    """A section for each part of a script, or for that of --only: `parts` are functions of arguments and section, which return the caption's note."""
+    for name, part in parts.items():
+        if args.only in (None, name):
+            section = Section(args, name)
+            section.keep(part(args, section) or "")
+
+
 def dumped(sections):
     """JSON with a line for each row of a table."""
     text = json.dumps(sections, indent=1, ensure_ascii=False)
