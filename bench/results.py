@@ -30,6 +30,7 @@ WIDTH = 160  # columns of a line of Markdown
 VIEW = ["--camera", HERE / "camera.txt", "--transfer-function", HERE / "transfer_function.txt"]  # of all performance figures
 EXACT = ["--integrator", "exact"]
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+PROGRAMS = ROOT / "build/release/bench"  # of -DTESSERA_BENCH=ON
 PYTHON_OF_VTK = ["xvfb-run", "-a", "/usr/bin/python3"]
 
 
@@ -42,7 +43,7 @@ def options(doc, **more):
     parser.add_argument("--work", type=pathlib.Path, help="folder of inputs, which are kept (default: a temporary one)")
     parser.add_argument("--write", action="store_true", help="write the tables into docs/")
     for name, value in more.items():
-        how = {"choices": value} if isinstance(value, tuple) else {"type": value} if isinstance(value, type) else {"type": type(value), "default": value}
+        how = {"choices": value} if isinstance(value, tuple) else {"type": value} if isinstance(value, type) else {"type": pathlib.Path if isinstance(value, pathlib.Path) else type(value), "default": value}
         parser.add_argument("--" + name.replace("_", "-"), **how)
     args = parser.parse_args()
     args.tessera = args.tessera.resolve()
@@ -100,6 +101,28 @@ def rotation(centre, distance, frames, degrees, height=0.0, angle=30):
         a = math.radians(degrees * n) + 0.3
         yield {"position": [centre[0] + distance * math.cos(a), centre[1] + height, centre[2] + distance * math.sin(a)], "focal_point": list(centre),
                "view_up": [0, 1, 0], "view_angle": angle}
+
+
+def exclusive(spans):
+    """For nested spans of a trace, the CPU time of each without those inside: (span, seconds)."""
+    found, open_spans = [], []
+    for span in sorted(spans, key=lambda s: (s["ts"], -s["dur"])):
+        while open_spans and span["ts"] >= open_spans[-1][0]["ts"] + open_spans[-1][0]["dur"]:
+            found.append(tuple(open_spans.pop()))
+        seconds = span["args"].get("cpu_us", 0) * 1e-6
+        if open_spans:
+            open_spans[-1][1] -= seconds
+        open_spans.append([span, seconds])
+    return found + [tuple(one) for one in open_spans]
+
+
+def spans_of(trace):
+    """A parsed trace's spans without whole frames, by (rank, thread)."""
+    threads = {}
+    for event in trace["traceEvents"]:
+        if event["ph"] == "X" and event["name"] != "frame":
+            threads.setdefault((event["pid"], event["tid"]), []).append(event)
+    return threads
 
 
 # ---- Captions --------------------------------------------------------------------------------------------------------

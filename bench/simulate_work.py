@@ -4,7 +4,7 @@ import collections
 import json
 import pathlib
 
-from scaling import exclusive
+from results import exclusive, spans_of
 
 END = 1024  # bytes: larger than the message that ends a frame
 
@@ -46,14 +46,11 @@ def work_of(trace):
     projectors, compositors = run["projectors"], run["compositors"]
     if projectors + compositors != run["ranks"]:
         raise SystemExit(f"{trace}: ranks have both roles; trace a run with --projectors N --compositors N on 2N ranks")
-    work, threads = Work(projectors, compositors), collections.defaultdict(list)
-    for event in parsed["traceEvents"]:
-        if event["ph"] == "X" and event["name"] != "frame":
-            threads[event["pid"], event["tid"]].append(event)
+    work = Work(projectors, compositors)
     setup, tiles = collections.Counter(), collections.defaultdict(dict)
     merge, moved, writes, frames = collections.Counter(), collections.defaultdict(list), [], set()
     finished = 0  # bytes of tiles sent to the first compositor
-    for (rank, _), spans in threads.items():
+    for (rank, _), spans in spans_of(parsed).items():
         for span, seconds in exclusive(spans):
             args, stage, seconds = span["args"], span["name"], max(seconds, 0.0)
             frame, tile = args.get("frame", -1), args.get("tile", -1)
