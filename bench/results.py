@@ -62,7 +62,12 @@ def run(*command, ranks=1, good=(0,)):
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
         begin = time.monotonic()
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=os.environ | MPI)
-        _, status, usage = os.wait4(process.pid, 0)
+        try:
+            _, status, usage = os.wait4(process.pid, 0)
+        except BaseException:  # a signal
+            process.terminate()
+            process.wait()
+            raise
         wall, process.returncode = time.monotonic() - begin, os.waitstatus_to_exitcode(status)
         texts = [file.seek(0) or file.read() for file in (out, err)]
     if process.returncode not in good:

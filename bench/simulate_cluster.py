@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Predictions of bench/simulate.py for machines that are not available: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
 
-    bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--sides 69,138] [--frames 4] [--jobs 1]
-
 Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work to M tets and N nodes by these rules:
 
 - Culling and binning: proportional to M, from the larger cube, divided evenly.
@@ -14,28 +12,22 @@ Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work
   on 8 nodes.
 - Threads of a rank share its work without loss; at most 8 in assembling an image, at most 12 in writing one, the number of compressed strips of a .png
   of this size.
-Needs only Python's standard library.
 """
-import argparse
 import collections
 import functools
 import itertools
 import math
 import multiprocessing
-import os
-import pathlib
-import re
 
-import results_file
+from results import Section, generated, options, render
 from simulate import GOODPUT, Settings, losses
-from simulate_check import call, mpirun
 from simulate_work import Work, work_of
 
 SIZE, TILE, BASE_NODES = 1024, 32, 8
 STRIPS = 12  # io/image/picture_strips.hpp: rows of 256 KiB, of 3 bytes a pixel
 PARTS = ("projection", "imbalance", "last tile", "compositing", "assembly", "wire")
-MILLIONS = (15.7, 51.1, 1e3, 1e4)
-MANY = 512  # nodes: a simulation takes so long that only the smallest and the largest meshes are run
+MILLIONS = (15.7, 1e4)
+NODES = (8, 64, 1024)
 MACHINES = ((32, 10), (2, 10), (32, 1))  # cores per node, Gbit/s
 
 
@@ -114,17 +106,14 @@ def window(depth, quantile, side, across):
 
 
 def base(args, side):
-    mesh, out = args.work / f"cube-{side}.tets", args.work / f"cube-{side}.trace.json"
-    if not mesh.exists():
-        call(args.tessera, "generate", "cube", mesh, f"n={side}", "--quiet")
-    if not out.exists():
-        mpirun(["mpirun", "--oversubscribe", "-n", 2 * BASE_NODES, args.tessera, "render", mesh, "--size", f"{SIZE}x{SIZE}", "--orbit", args.frames,
-                "-o", args.work / "frame_%04d.png", "--threads", "1", "--without", "sharing", "--projectors", BASE_NODES, "--compositors", BASE_NODES, "--timing", out,
-                "--quiet"], [])
-    return Base(work_of(out), side)
+    trace = args.work / f"cube-{side}.trace.json"
+    if not trace.exists():
+        render(args, generated(args, f"cube-{side}.tets", "cube", f"n={side}"), "--size", f"{SIZE}x{SIZE}", "--orbit", args.frames, "--threads", "1", "--without",
+               "sharing", "--projectors", BASE_NODES, "--compositors", BASE_NODES, "--timing", trace, ranks=2 * BASE_NODES, picture="frame_%04d.png")
+    return Base(work_of(trace), side)
 
 
-def foretell(small, large, frames, case):
+def predicted(small, large, frames, case):
     cores, gbit, millions, nodes = case
     settings = Settings(bytes_per_second=gbit * 1e9 / 8 * GOODPUT, latency=20e-6, cores=cores, threads=max(1, cores - 2))
     work = scaled(small, large, millions, nodes, frames)
@@ -140,41 +129,17 @@ def cell(whole, parts):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--tessera", type=pathlib.Path, required=True)
-    parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("--results", type=pathlib.Path)
-    parser.add_argument("--sides", default="69,138")
-    parser.add_argument("--nodes", default="8,64,1024")
-    parser.add_argument("--frames", type=int, default=4)
-    parser.add_argument("--jobs", type=int, default=1)
-    args = parser.parse_args()
-    args.tessera, args.work = args.tessera.resolve(), args.work.resolve()
-    args.work.mkdir(parents=True, exist_ok=True)
-    load = os.getloadavg()[0]
+    args = options(__doc__, sides="69,138", frames=4, jobs=1)
+    section = Section(args)
     small, large = (base(args, int(side)) for side in args.sides.split(","))
-    a, b = cells_and_segments(small, large)
-    columns = [int(nodes) for nodes in args.nodes.split(",")]
-    cases = [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in columns
-             if nodes < MANY or millions in (MILLIONS[0], MILLIONS[-1])]
-    cells = {}
+    section.table("rrr" + "l" * len(NODES), "cores a node", "Gbit/s", "tets", *(f"{nodes} nodes" for nodes in NODES))
     with multiprocessing.Pool(args.jobs) as pool:
-        for case, found in zip(cases, pool.imap(functools.partial(foretell, small, large, args.frames), cases)):
-            cells[case] = cell(*found)
-            print(*case, cells[case], flush=True)
-    lines = ["| cores a node | Gbit/s | tets | " + " | ".join(f"{nodes} nodes" for nodes in columns) + " |", "|---:|---:|---:|" + "---|" * len(columns)]
-    for (cores, gbit), millions in itertools.product(MACHINES, MILLIONS):
-        tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
-        lines.append(f"| {cores} | {gbit} | {tets} | " + " | ".join(cells.get((cores, gbit, millions, nodes), "") for nodes in columns) + " |")
-    found = (f"From {small.millions:.1f} and {large.millions:.1f} M tets on {BASE_NODES} nodes: tiles on all projectors "
-             f"{1e3 * a:.1f} ms a M + {1e3 * b:.0f} ms M^(1/3) of CPU time for M million tets, culling and binning {1e3 * large.setup / large.millions:.1f} ms a M, "
-             f"fragments {large.bytes / 1e6:.1f} MB (as M^{power(small, large, lambda x: x.bytes):.2f}), their compositing "
-             f"{1e3 * sum(large.merge.values()):.0f} ms, writing {1e3 * large.work.write:.0f} ms; {large.pairs / BASE_NODES:.0f} of {len(large.depth)} tiles "
-             f"a projector.")
-    print(found)
-    if args.results:
-        made = re.sub(r"\.$", "", results_file.made(load))
-        results_file.put(args.results, "simulate_cluster.py", f"{made}. `{results_file.command('simulate_cluster.py')}`.", lines)
+        found = pool.imap(functools.partial(predicted, small, large, args.frames),
+                          [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in NODES])
+        for (cores, gbit), millions in itertools.product(MACHINES, MILLIONS):
+            tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
+            section.row(cores, gbit, tets, *(cell(*next(found)) for _ in NODES))
+    section.keep()
 
 
 if __name__ == "__main__":
