@@ -1,15 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""First images: the result of `tessera render FILE -o OUT` without other options, in numbers and on contact sheets.
+"""First images: the result of `tessera render FILE -o OUT` without other options, in numbers; the images stay in --work.
 
-    bench/first_pictures.py --tessera PROGRAM [--before PROGRAM] [--data FOLDER] [--generated 40] [--sheets FOLDER] [--work FOLDER]
-                            [--results docs/RESULTS.md]
-
-Data sets: those of FOLDER (in the layout of its README: one file each, named in DATA below), and the same number of generated ones: meshes
-and volumes of `tessera generate`, and volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and
-heavy-tailed fields, noise). Images are 1024 x 1024, the program's default size.
-
-For each image, before it is composited over a background:
+Data sets: those of --data (in the layout of its README: one file each, named in DATA below), and 40 generated ones: meshes and volumes of `tessera generate`, and
+volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and heavy-tailed fields, noise). Images are 1024 x 1024, the program's
+default size. For each image, before it is composited over a background:
 
   covered    pixels with alpha >= 1/255
   alpha      their mean; target: 0.05 to 0.6
@@ -17,22 +12,17 @@ For each image, before it is composited over a background:
   colours    of covered pixels divided by alpha, converted from sRGB to CIE L*a*b*, in cells of 10 units a side: cells with at least 1 % of
              the pixels, taken largest first, each at least 15 (CIE76) from those taken before; target: 3
 
-Shapes (meshes without a varying field) are solids without these targets. --sheets writes before.png and after.png there:
-thumbnails over dark grey with their names. The results have a row
-for each data set outside the targets. Needs python3-numpy and python3-pil.
+Shapes (meshes without a varying field) are solids without these targets. The table has a row for each data set outside the targets. Needs python3-numpy and
+python3-pil.
 """
-import argparse
 import gzip
-import os
 import pathlib
 import struct
-import subprocess
-import tempfile
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image
 
-import results_file
+from results import Section, generated, options, run
 
 DATA = ("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin", "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
         "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu", "volumes/heptane.nii.gz", "volumes/LIDC2.vti",
@@ -47,30 +37,25 @@ GENERATED = (
     ("checker.vti", "checker n=8"))
 
 
-def nifti(path, values, spacing=(1, 1, 1)):
+def nifti(path, values):
     """A NIfTI-1 volume with an sform: values[k, j, i]."""
-    kinds = {"int16": 4, "float32": 16, "uint8": 2}
     header = bytearray(352)
     struct.pack_into("<i", header, 0, 348)
     struct.pack_into("<8h", header, 40, 3, *values.shape[::-1], 1, 1, 1, 1)
-    struct.pack_into("<2h", header, 70, kinds[values.dtype.name], values.dtype.itemsize * 8)
-    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, {"int16": 4, "float32": 16, "uint8": 2}[values.dtype.name], values.dtype.itemsize * 8)
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
     struct.pack_into("<3f", header, 108, 352, 1, 0)
     struct.pack_into("<2h", header, 252, 0, 1)
     for axis in range(3):
-        row = [0.0] * 4
-        row[axis] = spacing[axis]
-        struct.pack_into("<4f", header, 280 + 16 * axis, *row)
+        struct.pack_into("<f", header, 280 + 20 * axis, 1)
     header[344:348] = b"n+1\0"
-    with gzip.open(path, "wb", 1) as file:
-        file.write(bytes(header) + values.tobytes())
+    path.write_bytes(gzip.compress(bytes(header) + values.tobytes(), 1))
 
 
 def nrrd(path, values):
-    kinds = {"int16": "int16", "float32": "float", "uint8": "uint8", "float64": "double"}
-    sizes = " ".join(str(n) for n in values.shape[::-1])
-    head = f"NRRD0004\ntype: {kinds[values.dtype.name]}\ndimension: 3\nsizes: {sizes}\nendian: little\nencoding: raw\n\n"
-    path.write_bytes(head.encode() + values.tobytes())
+    sizes = " ".join(map(str, values.shape[::-1]))
+    kind = {"float32": "float"}.get(values.dtype.name, values.dtype.name)
+    path.write_bytes(f"NRRD0004\ntype: {kind}\ndimension: 3\nsizes: {sizes}\nendian: little\nencoding: raw\n\n".encode() + values.tobytes())
 
 
 def written(folder):
@@ -114,13 +99,6 @@ def written(folder):
         yield name
 
 
-def rendered(program, file, picture):
-    done = subprocess.run([program, "render", file, "-o", picture], capture_output=True, text=True, timeout=600)
-    if done.returncode != 0:
-        raise SystemExit(f"{file}: {done.stderr.strip()}")
-    return done.stderr
-
-
 def lab(srgb):
     linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
     xyz = linear @ np.array([[0.4124, 0.2126, 0.0193], [0.3576, 0.7152, 0.1192], [0.1805, 0.0722, 0.9505]]) / [0.9505, 1, 1.089]
@@ -129,12 +107,11 @@ def lab(srgb):
 
 
 def measured(picture):
-    """covered fraction of the image, mean alpha, saturated fraction, distinguishable colours"""
+    """Mean alpha, saturated fraction and distinguishable colours of covered pixels."""
     rgba = np.asarray(Image.open(picture).convert("RGBA"), np.float64) / 255
     covered = rgba[rgba[..., 3] >= 1 / 255 - 1e-9]
     if len(covered) == 0:
-        return 0, 0, 0, 0
-    alpha = covered[:, 3]
+        return 0, 0, 0
     cells, counts = np.unique(np.floor(lab(covered[:, :3]) / 10), axis=0, return_counts=True)
     taken = []
     for cell, count in sorted(zip(cells.tolist(), counts.tolist()), key=lambda pair: -pair[1]):
@@ -142,81 +119,28 @@ def measured(picture):
             break
         if all(np.linalg.norm((np.array(cell) - other) * 10) >= 15 for other in taken):
             taken.append(np.array(cell))
-    return len(covered) / rgba[..., 3].size, alpha.mean(), (alpha >= 0.98).mean(), len(taken)
-
-
-def sheet(pictures, path):
-    side, columns = 192, 8
-    rows = -(-len(pictures) // columns)
-    image = Image.new("RGB", (columns * side, rows * (side + 14)), (20, 20, 20))
-    draw = ImageDraw.Draw(image)
-    for i, (name, picture) in enumerate(pictures):
-        at = (i % columns * side, i // columns * (side + 14))
-        over = Image.new("RGBA", (1024, 1024), (60, 60, 60, 255))
-        over.alpha_composite(Image.open(picture).convert("RGBA"))
-        image.paste(over.convert("RGB").resize((side - 4, side - 4), Image.LANCZOS), (at[0] + 2, at[1] + 14))
-        draw.text((at[0] + 4, at[1] + 1), name, fill=(230, 230, 230))
-    image.save(path)
-
-
-def right(row, shape):
-    return shape or (0.05 <= row[1] <= 0.6 and row[2] <= 0.02 and row[3] >= 3)
+    return covered[:, 3].mean(), (covered[:, 3] >= 0.98).mean(), len(taken)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tessera", required=True)
-    parser.add_argument("--before", help="another build, for the other sheet and columns")
-    parser.add_argument("--data", type=pathlib.Path)
-    parser.add_argument("--generated", type=int, default=40)
-    parser.add_argument("--sheets", type=pathlib.Path)
-    parser.add_argument("--work", type=pathlib.Path)
-    parser.add_argument("--results", type=pathlib.Path)
-    arguments = parser.parse_args()
-    load = os.getloadavg()[0]
-    temporary = tempfile.TemporaryDirectory()
-    work = arguments.work or pathlib.Path(temporary.name)
-    work.mkdir(parents=True, exist_ok=True)
-    files = [arguments.data / name for name in DATA] if arguments.data else []
-    made = []
-    for name, words in GENERATED:
-        kind, *parameters = words.split()
-        subprocess.run([arguments.tessera, "generate", kind, work / name, *parameters, "--quiet"], check=True)
-        made.append(work / name)
-    made += [work / name for name in written(work)]
-    files += made[: arguments.generated]
-    programs = {"after": arguments.tessera} | ({"before": arguments.before} if arguments.before else {})
-    rows, pictures = {}, {which: [] for which in programs}
+    args = options(__doc__, data=pathlib.Path)
+    files = [args.data / name for name in DATA] if args.data else []
+    files += [generated(args, name, *words.split()) for name, words in GENERATED] + [args.work / name for name in written(args.work)]
+    section, outside = Section(args), []
     for file in files:
-        for which, program in programs.items():
-            picture = work / f"{file.name}.{which}.png"
-            said = rendered(program, file, picture)
-            is_shape = "shape by depth" in said
-            rows.setdefault(file.name, {})[which] = (*measured(picture), is_shape)
-            pictures[which].append((file.name, picture))
-        print(file.name, *(f"{which}: " + " ".join(f"{x:.3g}" for x in rows[file.name][which]) for which in programs), flush=True)
-    table = ["| data set | " + " | ".join(f"{which}: alpha | saturated [%] | colours" for which in reversed(list(programs))) + " |",
-             "|---" * (1 + 3 * len(programs)) + "|"]
-    outside = {name: row for name, row in rows.items() if not right(row["after"], row["after"][4])}
-    for name, row in outside.items():
-        cells = [f"{row[w][1]:.2f} | {100 * row[w][2]:.1f} | {row[w][3]}{' (shape)' if row[w][4] else ''}" for w in reversed(list(programs))]
-        table.append(f"| {name} | " + " | ".join(cells) + " |")
-    good = {w: sum(right(row[w], row[w][4]) for row in rows.values()) for w in programs}
-    for which in reversed(list(programs)):
-        print(f"{which}: {good[which]} of {len(rows)} within all three bounds")
-    for name, row in outside.items():
-        print("outside:", name, row["after"])
-    if arguments.sheets:
-        arguments.sheets.mkdir(parents=True, exist_ok=True)
-        for which, some in pictures.items():
-            sheet(some, arguments.sheets / f"{which}.png")
-    if arguments.results:
-        counts = ", ".join((f"{which} " if arguments.before else "") + str(good[which]) for which in reversed(list(programs)))
-        caption = (f"{results_file.made(load)} `{results_file.command('first_pictures.py')}`: `tessera render FILE -o OUT`, no other option, "
-                   "1024 x 1024. Of pixels with alpha of 1/255 or more: mean alpha (wanted 0.05 to 0.6), share with 0.98 or more (wanted at "
-                   f"most 2 %), distinguishable colours (wanted 3); of {len(rows)} data sets within all three: {counts}; shapes, meshes without "
-                   "a field, count as within")
-        results_file.put(arguments.results, "first_pictures.py", caption, table if outside else [])
+        picture = args.work / f"{file.name}.png"
+        is_shape = "field shape (depth)" in run(args.tessera, "render", file, "-o", picture).err
+        alpha, saturated, colours = measured(picture)
+        if not is_shape and not (0.05 <= alpha <= 0.6 and saturated <= 0.02 and colours >= 3):
+            outside.append((file.name, f"{alpha:.2f}", f"{100 * saturated:.1f}", colours))
+        print(f"{file.name}: alpha {alpha:.2f}, saturated {100 * saturated:.1f} %, {colours} colours{', shape' * is_shape}", flush=True)
+    if outside:
+        section.table("lrrr", "data set", "alpha", "saturated [%]", "colours")
+        for row in outside:
+            section.row(*row)
+    section.keep("`tessera render FILE -o OUT`, no other option, 1024 x 1024. Of pixels with alpha of 1/255 or more: mean alpha (wanted 0.05 to 0.6), share with "
+                 f"0.98 or more (wanted at most 2 %), distinguishable colours (wanted 3); of {len(files)} data sets within all three: {len(files) - len(outside)}; "
+                 "shapes, meshes without a field, count as within")
 
 
 if __name__ == "__main__":

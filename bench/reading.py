@@ -1,32 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times reading: `tessera info` compared with VTK's own reader, for every format that VTK's Python module reads as a volume.
+"""Times reading: `tessera info` compared with VTK's own reader, for a selection of formats.
 
-    bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results docs/RESULTS.md]
-
-    bench/reading.py --tessera PROGRAM --old PROGRAM ...    compares the two programs instead: `tessera render`, 8 x 8 pixels with
-                                                            a given function, so that neither computes a default one
-
-Files are generated (reading_files.py) and kept in --work. Runs alternate; figures are the minimum of --repeat. For Tessera they cover the
-whole program, including making and examining tets: CPU and wall time, and the largest sum of the memory of both processes, sampled
-every few milliseconds; and its reader program alone. For VTK they cover the reader's Update() with all arrays, in a separate process, without the time
-and memory of starting Python and loading VTK. Needs python3-vtk9, python3-numpy, and python3-h5py for CGNS and VTKHDF.
+Files are generated (reading_files.py) and kept in --work. Runs alternate; figures are the minimum of --repeat. For Tessera they cover the whole program, including
+making and examining tets: CPU and wall time, and the largest sum of the memory of both processes, sampled every few milliseconds; and its reader program alone.
+For VTK they cover the reader's Update() with all arrays, in a separate process, without the time and memory of starting Python and loading VTK. Needs
+python3-vtk9, python3-numpy, and python3-h5py for CGNS.
 """
-import argparse
 import json
 import os
 import pathlib
 import resource
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 
-import results_file
-
-PYTHON = sys.executable
-FUNCTION, CAMERA = (pathlib.Path(__file__).with_name(f"{name}.txt") for name in ("transfer_function", "camera"))
+from results import Section, options, run
 
 
 def children_of(process):
@@ -100,11 +90,6 @@ def read_by_vtk(name, file):
     reader = getattr(vtk, name)()
     if name == "vtkDICOMImageReader":
         reader.SetDirectoryName(file)
-    elif name == "vtkGenericEnSightReader":
-        reader.SetCaseFileName(file)
-    elif name == "vtkNrrdReader":  # the parallel one replaces it
-        reader.SetController(vtk.vtkDummyController())
-        reader.SetFileName(file)
     elif name == "vtkMultiBlockPLOT3DReader":
         reader.SetXYZFileName(file)
         reader.SetQFileName(str(pathlib.Path(file).with_suffix(".q")))
@@ -142,74 +127,43 @@ def read_by_vtk(name, file):
 
 
 def run_vtk(name, file):
-    done = subprocess.run([PYTHON, __file__, "--vtk", name, str(file)], capture_output=True, text=True, check=True)
-    *figures, cells = json.loads(done.stdout.splitlines()[-1])
+    *figures, cells = json.loads(run(sys.executable, __file__, "--vtk", name, file).out.splitlines()[-1])
     if cells == 0:
-        raise RuntimeError("VTK reads nothing")
+        sys.exit(f"reading.py: {file}: VTK reads nothing")
     return figures
 
 
-def least(runs):
-    return [min(figures) for figures in zip(*runs)]
-
-
-def measure(args, work):
-    """A row per format: name, MB, and for both readers wall time, CPU time and memory, the minimum of each."""
-    import reading_files
-
-    for name, n, write, reader in reading_files.FORMATS:
-        if not any(word in name for word in args.only.split(",")):
-            continue
-        folder = work / "".join(c if c.isalnum() else "_" for c in name)
-        try:
-            if not folder.exists():
-                folder.mkdir(parents=True)
-                file = write(folder, n)
-                (work / f"{folder.name}.name").write_text(str(file.relative_to(work)))
-            file = work / (work / f"{folder.name}.name").read_text()
-            first, second = [], []
-            tiny = ["render", file, "-o", work / "tiny.pfm", "--size", "8x8", "--quiet", "--transfer-function", FUNCTION,
-                    "--camera", CAMERA]
-            words = tiny if args.old else ["info", file]
-            sides = [(first, lambda: run_tessera(args.tessera, *words)),
-                     (second, lambda: run_tessera(args.old, *words) if args.old else run_vtk(reader, file))]
-            for turn in range(args.repeat):
-                for runs, run in sides if turn % 2 == 0 else sides[::-1]:
-                    runs.append(run())
-        except (RuntimeError, OSError, subprocess.CalledProcessError, AttributeError, ImportError) as error:
-            print(f"{name}: {getattr(error, 'stderr', None) or error}", file=sys.stderr, flush=True)
-            continue
-        size = sum(f.stat().st_size for f in folder.rglob("*") if f.is_file()) / 1e6
-        yield name, size, least(first), least(second)
+def file_of(work, name, n, write):
+    """The file of a format, made if it is not there yet, and the megabytes of all that belongs to it."""
+    folder = work / "".join(c if c.isalnum() else "_" for c in name)
+    note = folder.with_suffix(".name")
+    if not note.exists():
+        folder.mkdir(exist_ok=True)
+        note.write_text(str(write(folder, n).relative_to(work)))
+    return work / note.read_text(), sum(f.stat().st_size for f in folder.rglob("*") if f.is_file()) / 1e6
 
 
 def main():
     if sys.argv[1:2] == ["--vtk"]:
         return read_by_vtk(*sys.argv[2:4])
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tessera", type=pathlib.Path, required=True)
-    parser.add_argument("--old", type=pathlib.Path)
-    parser.add_argument("--work", type=pathlib.Path)
-    parser.add_argument("--repeat", type=int, default=5)
-    parser.add_argument("--only", default="")
-    parser.add_argument("--results", type=pathlib.Path)
-    args = parser.parse_args()
-    load = os.getloadavg()[0]
-    other = "before" if args.old else "VTK"
-    table = [f"| format | MB | {other}: CPU [s], memory [MiB] | reading program: CPU, memory | {'`tessera render`' if args.old else '`tessera info`'}: CPU, memory, wall |", "|---|---:|---:|---:|---:|"]
-    print("\n".join(table), flush=True)
-    with tempfile.TemporaryDirectory() as folder:
-        for name, size, own, others in measure(args, args.work or pathlib.Path(folder)):
-            wall, cpu, memory = (a / b for a, b in zip(own[:3], others[:3]))
-            reader = f"{own[3] / others[1]:.2f}x, {own[4] / others[2]:.2f}x" if own[4] > 0 else "-"
-            table.append(f"| {name} | {size:.0f} | {others[1]:.2f}, {others[2] / 2**20:.0f} | {reader} | {cpu:.2f}x, {memory:.2f}x, {wall:.2f}x |")
-            print(table[-1], flush=True)
-    if args.results:
-        what = ("`tessera render` of 8 x 8 pixels with view and function given, and an older program" if args.old else
-                "`tessera info`, the whole program, and VTK 9.1's reader alone, without loading it")
-        caption = (f"{results_file.made(load)} `{results_file.command('reading.py')}`: {what}; the least of {args.repeat} runs; CPU and wall time and peak "
-                   f"memory as multiples of the others'")
-        results_file.put(args.results, "reading.py old" if args.old else "reading.py", caption, table)
+    import reading_files
+    args = options(__doc__, repeat=5, only="")
+    section = Section(args)
+    section.table("lrrrr", "format", "MB", "VTK: CPU [s], memory [MiB]", "reading program: CPU, memory", "`tessera info`: CPU, memory, wall")
+    for name, n, write, reader in reading_files.FORMATS:
+        if args.only not in name:
+            continue
+        file, size = file_of(args.work, name, n, write)
+        runs = {"tessera": [], "VTK": []}
+        for turn in range(args.repeat):
+            for which in ("tessera", "VTK") if turn % 2 == 0 else ("VTK", "tessera"):
+                runs[which].append(run_tessera(args.tessera, "info", file) if which == "tessera" else run_vtk(reader, file))
+        (wall, cpu, memory, reader_cpu, reader_memory), (vtk_wall, vtk_cpu, vtk_memory) = ([min(figures) for figures in zip(*of)] for of in runs.values())
+        section.row(name, f"{size:.0f}", f"{vtk_cpu:.2f}, {vtk_memory / 2**20:.0f}",
+                    f"{reader_cpu / vtk_cpu:.2f}x, {reader_memory / vtk_memory:.2f}x" if reader_memory > 0 else "-",
+                    f"{cpu / vtk_cpu:.2f}x, {memory / vtk_memory:.2f}x, {wall / vtk_wall:.2f}x")
+    section.keep(f"`tessera info`, the whole program, and VTK 9.1's reader alone, without loading it; the least of {args.repeat} runs; CPU and wall time and peak memory "
+                 "as multiples of VTK's")
 
 
 if __name__ == "__main__":

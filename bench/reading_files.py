@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files for bench/reading.py: one cube of tets, hexahedra or samples in every format that VTK's packaged readers support.
+"""Files for bench/reading.py: one cube of tets, hexahedra or samples in a selection of formats.
 
 Each function writes into a directory and returns the file to open; `FORMATS` lists them, with VTK's reader. Written by VTK's writers, or
 here if it has none. HDF5 by h5py.
@@ -25,19 +25,25 @@ def hexahedra(n):
     return first + np.array([0, 1, 1 + n, n, n * n, 1 + n * n, 1 + n + n * n, n + n * n])
 
 
-def grid_of(points, values, cells, kind):
-    grid = vtk.vtkUnstructuredGrid()
+def points_of(points):
     held = vtk.vtkPoints()
     held.SetData(numpy_to_vtk(points, True))
-    grid.SetPoints(held)
-    array = vtk.vtkCellArray()
-    width = cells.shape[1]
+    return held
+
+
+def with_field(attributes, values):
+    field = numpy_to_vtk(values, True)
+    field.SetName("f")
+    attributes.SetScalars(field)
+
+
+def grid_of(points, values, cells, kind):
+    grid, array, width = vtk.vtkUnstructuredGrid(), vtk.vtkCellArray(), cells.shape[1]
+    grid.SetPoints(points_of(points))
     array.SetData(numpy_to_vtkIdTypeArray(np.arange(0, cells.size + 1, width, dtype=np.int64), True),
                   numpy_to_vtkIdTypeArray(cells.ravel().astype(np.int64), True))
     grid.SetCells(kind, array)
-    field = numpy_to_vtk(values, True)
-    field.SetName("f")
-    grid.GetPointData().SetScalars(field)
+    with_field(grid.GetPointData(), values)
     return grid
 
 
@@ -54,20 +60,7 @@ def hexes(n):
 def image(n):
     grid = vtk.vtkImageData()
     grid.SetDimensions(n, n, n)
-    field = numpy_to_vtk(lattice(n)[1], True)
-    field.SetName("f")
-    grid.GetPointData().SetScalars(field)
-    return grid
-
-
-def rectilinear(n):
-    grid = vtk.vtkRectilinearGrid()
-    grid.SetDimensions(n, n, n)
-    for set_axis in (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates):
-        set_axis(numpy_to_vtk(np.linspace(0, 1, n) ** 2 + np.linspace(0, 1, n), True))
-    field = numpy_to_vtk(lattice(n)[1], True)
-    field.SetName("f")
-    grid.GetPointData().SetScalars(field)
+    with_field(grid.GetPointData(), lattice(n)[1])
     return grid
 
 
@@ -75,12 +68,8 @@ def structured(n):
     points, values = lattice(n)
     grid = vtk.vtkStructuredGrid()
     grid.SetDimensions(n, n, n)
-    held = vtk.vtkPoints()
-    held.SetData(numpy_to_vtk(points, True))
-    grid.SetPoints(held)
-    field = numpy_to_vtk(values, True)
-    field.SetName("f")
-    grid.GetPointData().SetScalars(field)
+    grid.SetPoints(points_of(points))
+    with_field(grid.GetPointData(), values)
     return grid
 
 
@@ -94,37 +83,7 @@ def written(writer, data, file, **settings):
 
 
 APPENDED = {"SetDataMode": vtk.vtkXMLWriter.Appended, "SetEncodeAppendedData": False, "SetCompressorType": 0}
-PACKED = {"SetDataMode": vtk.vtkXMLWriter.Appended, "SetEncodeAppendedData": False}
 TEXT = {"SetDataMode": vtk.vtkXMLWriter.Ascii}
-BINARY, ASCII = {"SetFileType": vtk.VTK_BINARY}, {"SetFileType": vtk.VTK_ASCII}
-
-
-def halves(n):
-    """Two blocks of tets."""
-    blocks = vtk.vtkMultiBlockDataSet()
-    for k in range(2):
-        part = tets(n)
-        moved = vtk.vtkTransformFilter()
-        place = vtk.vtkTransform()
-        place.Translate(3 * k, 0, 0)
-        moved.SetTransform(place)
-        moved.SetInputData(part)
-        moved.Update()
-        blocks.SetBlock(k, moved.GetOutput())
-        blocks.GetMetaData(k).Set(vtk.vtkCompositeDataSet.NAME(), f"half {k}")
-    return blocks
-
-
-def pieces(folder, n):
-    names = []
-    for k in range(2):
-        names.append(f"piece{k}.vtu")
-        written(vtk.vtkXMLUnstructuredGridWriter(), halves(n).GetBlock(k), folder / names[-1], **APPENDED)
-    text = '<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian"><PUnstructuredGrid GhostLevel="0"><PPointData Scalars="f">'
-    text += '<PDataArray type="Float32" Name="f"/></PPointData><PPoints><PDataArray type="Float32" NumberOfComponents="3"/></PPoints>'
-    text += "".join(f'<Piece Source="{name}"/>' for name in names) + "</PUnstructuredGrid></VTKFile>"
-    (folder / "m.pvtu").write_text(text)
-    return folder / "m.pvtu"
 
 
 def foam_file(file, kind, body, binary=True):
@@ -170,21 +129,6 @@ def openfoam(folder, n):
     return folder / "case.foam"
 
 
-def ensight(folder, n):
-    """Gold, binary; VTK 9.1's own writer leaves its .case file empty."""
-    points, values = lattice(n)
-    cells = hexahedra(n)
-    line, number = lambda text: text.encode().ljust(80, b"\0"), lambda *k: np.array(k, "<i4").tobytes()
-    with open(folder / "m.geo", "wb") as file:
-        file.write(b"".join(map(line, ("C Binary", "cube", "made", "node id assign", "element id assign", "part"))) + number(1) + line("cube"))
-        file.write(line("coordinates") + number(len(points)) + points.T.astype("<f4").tobytes())
-        file.write(line("hexa8") + number(len(cells)) + (cells + 1).astype("<i4").tobytes())
-    with open(folder / "m.f", "wb") as file:
-        file.write(line("f") + line("part") + number(1) + line("coordinates") + values.astype("<f4").tobytes())
-    (folder / "m.case").write_text("FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: m.geo\nVARIABLE\nscalar per node: f m.f\n")
-    return folder / "m.case"
-
-
 def exodus(folder, n):
     return written(vtk.vtkExodusIIWriter(), tets(n), folder / "m.ex2")
 
@@ -225,24 +169,6 @@ def cgns(folder, n):
     return folder / "m.cgns"
 
 
-def vtk_hdf(folder, n):
-    import h5py
-    points, values = lattice(n)
-    cells = tets(n).GetCells()
-    from vtk.util.numpy_support import vtk_to_numpy
-    with h5py.File(folder / "m.vtkhdf", "w") as file:
-        root = file.create_group("VTKHDF")
-        root.attrs["Version"] = [1, 0]
-        root.attrs.create("Type", b"UnstructuredGrid", dtype="S16")
-        offsets, corners = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(cells.GetConnectivityArray())
-        for name, data in (("NumberOfPoints", [len(points)]), ("NumberOfCells", [len(offsets) - 1]), ("NumberOfConnectivityIds", [len(corners)]),
-                           ("Points", points), ("Offsets", offsets), ("Connectivity", corners),
-                           ("Types", np.full(len(offsets) - 1, vtk.VTK_TETRA, np.uint8))):
-            root.create_dataset(name, data=data)
-        root.create_group("PointData").create_dataset("f", data=values)
-    return folder / "m.vtkhdf"
-
-
 def plot3d(folder, n):
     points, values = lattice(n)
     with open(folder / "m.xyz", "wb") as file:
@@ -257,44 +183,6 @@ def plot3d(folder, n):
 
 def rows(file, array, form):
     np.savetxt(file, array, fmt=form)
-
-
-def avs_ucd(folder, n):
-    points, values = lattice(n)
-    cells = hexahedra(n)
-    with open(folder / "m.inp", "w") as file:
-        file.write(f"{len(points)} {len(cells)} 1 0 0\n")
-        rows(file, np.column_stack([np.arange(1, len(points) + 1), points]), "%d %.6g %.6g %.6g")
-        order = cells[:, [4, 5, 6, 7, 0, 1, 2, 3]] + 1
-        rows(file, np.column_stack([np.arange(1, len(cells) + 1), order]), "%d 1 hex" + " %d" * 8)
-        file.write("1 1\nf, none\n")
-        rows(file, np.column_stack([np.arange(1, len(points) + 1), values]), "%d %.6g")
-    return folder / "m.inp"
-
-
-def tecplot(folder, n):
-    points, values = lattice(n)
-    cells = hexahedra(n)
-    with open(folder / "m.tec", "w") as file:
-        file.write('TITLE = "cube"\nVARIABLES = "X", "Y", "Z", "f"\n')
-        file.write(f"ZONE T=\"cube\", N={len(points)}, E={len(cells)}, F=FEPOINT, ET=BRICK\n")
-        rows(file, np.column_stack([points, values]), "%.6g")
-        rows(file, cells + 1, "%d")
-    return folder / "m.tec"
-
-
-def gambit(folder, n):
-    points, _ = lattice(n)
-    cells = hexahedra(n)[:, [0, 1, 3, 2, 4, 5, 7, 6]] + 1
-    with open(folder / "m.neu", "w") as file:
-        file.write("        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\ncube\nPROGRAM: Gambit VERSION: 2.4.6\n 1 Jan 2000 00:00:00\n")
-        file.write("     NUMNP     NELEM     NGRPS    NBSETS     NDFCD     NDFVL\n")
-        file.write(f"{len(points):10}{len(cells):10}{0:10}{0:10}{3:10}{3:10}\nENDOFSECTION\n   NODAL COORDINATES 2.4.6\n")
-        rows(file, np.column_stack([np.arange(1, len(points) + 1), points]), "%10d%20.11e%20.11e%20.11e")
-        file.write("ENDOFSECTION\n      ELEMENTS/CELLS 2.4.6\n")
-        rows(file, np.column_stack([np.arange(1, len(cells) + 1), cells]), "%8d  4  8 " + "%8d" * 7 + "\n               %8d")
-        file.write("ENDOFSECTION\n")
-    return folder / "m.neu"
 
 
 def fluent(folder, n):
@@ -336,13 +224,6 @@ def netcdf(folder, n):
             np.linspace(0, 1, n).astype(">f4").tofile(file)
         lattice(n)[1].astype(">f4").tofile(file)
     return folder / "m.nc"
-
-
-def nrrd(folder, n):
-    with open(folder / "m.nrrd", "wb") as file:
-        file.write(f"NRRD0004\ntype: float\ndimension: 3\nsizes: {n} {n} {n}\nspacings: 1 1 1\nendian: little\nencoding: raw\n\n".encode())
-        lattice(n)[1].tofile(file)
-    return folder / "m.nrrd"
 
 
 def dicom(folder, n):
@@ -392,9 +273,7 @@ def levels(folder, n):
         grid.SetDimensions(n + 1, n + 1, n + 1)
         grid.SetSpacing(step, step, step)
         grid.SetOrigin(low * step, low * step, low * step)
-        field = numpy_to_vtk(lattice(n)[1], True)
-        field.SetName("f")
-        grid.GetCellData().SetScalars(field)
+        with_field(grid.GetCellData(), lattice(n)[1])
         amr.SetSpacing(level, [step] * 3)
         amr.SetAMRBox(level, 0, vtk.vtkAMRBox([low] * 3, [high] * 3))
         amr.SetDataSet(level, 0, grid)
@@ -420,38 +299,20 @@ def xml(kind, make, writer, settings):
 
 
 # Name, points along an edge, writer, VTK's reader; the last part of a name in brackets is the storage format.
-UG, SG, RG, IM = (getattr(vtk, f"vtkXML{k}Writer") for k in ("UnstructuredGrid", "StructuredGrid", "RectilinearGrid", "ImageData"))
+UG, SG, IM = (getattr(vtk, f"vtkXML{k}Writer") for k in ("UnstructuredGrid", "StructuredGrid", "ImageData"))
 FORMATS = [
     (".vtu, raw", 65, xml("vtu", tets, UG, APPENDED), "vtkXMLUnstructuredGridReader"),
-    (".vtu, zlib", 65, xml("vtu", tets, UG, PACKED), "vtkXMLUnstructuredGridReader"),
     (".vtu, text", 65, xml("vtu", tets, UG, TEXT), "vtkXMLUnstructuredGridReader"),
     (".vtu of hexahedra, raw", 101, xml("vtu", hexes, UG, APPENDED), "vtkXMLUnstructuredGridReader"),
-    (".vtk, binary", 65, xml("vtk", tets, vtk.vtkUnstructuredGridWriter, BINARY), "vtkUnstructuredGridReader"),
-    (".vtk, text", 65, xml("vtk", tets, vtk.vtkUnstructuredGridWriter, ASCII), "vtkUnstructuredGridReader"),
     (".vts, raw", 101, xml("vts", structured, SG, APPENDED), "vtkXMLStructuredGridReader"),
-    (".vtr, raw", 257, xml("vtr", rectilinear, RG, APPENDED), "vtkXMLRectilinearGridReader"),
     (".vti, raw", 257, xml("vti", image, IM, APPENDED), "vtkXMLImageDataReader"),
-    (".vti, zlib", 257, xml("vti", image, IM, PACKED), "vtkXMLImageDataReader"),
-    (".vtk image, binary", 257, xml("vtk", image, vtk.vtkStructuredPointsWriter, BINARY), "vtkStructuredPointsReader"),
-    (".vtm of two", 51, lambda folder, n: written(vtk.vtkXMLMultiBlockDataWriter(), halves(n), folder / "m.vtm", **APPENDED), "vtkXMLMultiBlockDataReader"),
-    (".pvtu of two", 51, pieces, "vtkXMLPUnstructuredGridReader"),
     ("OpenFOAM, binary", 101, openfoam, "vtkOpenFOAMReader"),
-    ("EnSight Gold, binary", 101, ensight, "vtkGenericEnSightReader"),
     ("CGNS", 101, cgns, "vtkCGNSReader"),
     ("Exodus II", 65, exodus, "vtkExodusIIReader"),
-    ("VTKHDF", 65, vtk_hdf, "vtkHDFReader"),
     ("PLOT3D, binary", 101, plot3d, "vtkMultiBlockPLOT3DReader"),
-    ("AVS UCD, text", 71, avs_ucd, "vtkAVSucdReader"),
     ("Fluent, text", 71, fluent, "vtkFLUENTReader"),
-    ("Tecplot, text", 71, tecplot, "vtkTecplotReader"),
-    ("GAMBIT, text", 71, gambit, "vtkGAMBITReader"),
     ("NetCDF classic", 257, netcdf, "vtkNetCDFCFReader"),
-    ("MINC 1", 257, lambda folder, n: written(vtk.vtkMINCImageWriter(), image(n), folder / "m.mnc"), "vtkMINCImageReader"),
     ("NIfTI", 257, lambda folder, n: written(vtk.vtkNIFTIImageWriter(), image(n), folder / "m.nii"), "vtkNIFTIImageReader"),
-    ("NIfTI, gzip", 257, lambda folder, n: written(vtk.vtkNIFTIImageWriter(), image(n), folder / "m.nii.gz"), "vtkNIFTIImageReader"),
-    ("MetaImage, raw", 257, lambda folder, n: written(vtk.vtkMetaImageWriter(), image(n), folder / "m.mhd", SetCompression=False), "vtkMetaImageReader"),
-    ("MetaImage, zlib", 257, lambda folder, n: written(vtk.vtkMetaImageWriter(), image(n), folder / "m.mha"), "vtkMetaImageReader"),
-    ("NRRD, raw", 257, nrrd, "vtkNrrdReader"),
     ("DICOM, 16 bits", 257, dicom, "vtkDICOMImageReader"),
     ("HyperTreeGrid", 24, hyper_trees, "vtkXMLHyperTreeGridReader"),
     ("overlapping AMR", 128, levels, "vtkXMLUniformGridAMRReader"),
