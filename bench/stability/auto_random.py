@@ -2,25 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random scenes against the promise of `--accuracy`: no pixel may have a larger error than requested.
 
-    bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0] [--times]
+    bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0]
 
 Case i of a seed is always the same: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
 `--verify` on random pixels. An excused pixel (docs/ACCURACY.md) does not break a case, because one of 400 is more than a whole
 image may have. Over all cases, at most 1e-4 of the pixels, plus three standard deviations, may be excused. Prints each
 case that breaks with the command that reproduces it (`--first i --cases 1 --keep FOLDER` keeps its files), and exits with
 status 1 if any did or too many pixels were excused. Needs only Python's standard library.
-
-With `--times` the images are `--larger` times as wide and high, and `auto` is compared with the fastest single method
-that keeps the accuracy in 400 random pixels. Cases of less than 50 ms are left out. The two are rendered alternately, five
-times three frames each (one from 300 ms on): a case is slow if `auto` takes more than 1.1 times as long, both by the fastest frames
-and by the median of the rounds, so that load bursts of other programs do not decide.
 """
 import argparse
 import json
 import math
 import pathlib
 import random
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -88,56 +82,13 @@ def random_input(r, tessera, folder):
     return path, extra, f"{kind} {' '.join(words)}"
 
 
-MESH = [["--integrator", w] for w in ("exact", "sampled:1", "sampled:2", "sampled:4", "sampled:16", "preintegrated:128", "partial")]
-GRID = [["--integrator", "exact"]] + [["--integrator", m, "--step", s] for m in ("sampled", "preintegrated") for s in ("2", "1", "0.5", "0.25")]
-
-
-def timed(command, folder, repeat):
-    """The frames' times in ms; empty if there is no image."""
-    done = subprocess.run([*command, "--repeat", str(repeat)], capture_output=True, text=True, timeout=600)
-    return json.loads((folder / "r.json").read_text())["frames"][0]["frame_ms"] if done.returncode == 0 else []
-
-
-def error_of(command, folder):
-    done = subprocess.run([*command, "--verify", "400"], capture_output=True, text=True, timeout=600)
-    error = json.loads((folder / "r.json").read_text())["frames"][0]["verify"]["max_error"] if done.returncode in (0, 4) else None
-    return math.inf if error is None else error
-
-
-def time_case(tessera, seed, number, folder, args):
-    """(ratio of auto to the best, words); empty below 50 ms."""
-    command, words, accuracy = case_of(tessera, seed, number, folder, args.threads, args.larger)
-    verify = command.index("--verify")
-    del command[verify:verify + 2]
-    at = command.index("--accuracy")
-    auto = timed(command, folder, 2)
-    if not auto or min(auto) < 50:
-        return None
-    repeat = 3 if min(auto) < 300 else 1
-    # Only faster methods must be judged, the fastest first.
-    rivals = []
-    for method in GRID if words.split()[0] in ("ripples", "checker") else MESH:
-        other = [*command[:at], *method, *command[at + 2:]]
-        rivals.append((min(timed(other, folder, repeat), default=math.inf), other, method))
-    faster = sorted(r for r in rivals if r[0] < min(auto))
-    best = next((r for r in faster if error_of(r[1], folder) <= accuracy), None)
-    if best is None:
-        return 1.0, f"{words}, accuracy {accuracy:.2g}: auto {min(auto):.0f} ms, best auto"
-    rounds = []
-    for _ in range(5):  # alternately, so that other load affects both
-        rounds.append((min(timed(command, folder, repeat)), min(timed(best[1], folder, repeat))))
-    mine, other = (min(times) for times in zip(*rounds))
-    return min(mine / other, statistics.median(a / b for a, b in rounds)), (
-        f"{words}, accuracy {accuracy:.2g}: auto {mine:.0f} ms, best {' '.join(best[2])} {other:.0f} ms")
-
-
-def case_of(tessera, seed, number, folder, threads, larger=1):
+def case_of(tessera, seed, number, folder, threads):
     """(command, the input's description, accuracy); its files are in `folder`, the report will be r.json."""
     r = random.Random(f"{seed}/{number}")
     path, extra, words = random_input(r, tessera, folder)
     knots = transfer_function(r, 0.0, 1.0)
     (folder / "tf.txt").write_text("".join(" ".join(repr(float(x)) for x in k) + "\n" for k in knots))
-    (folder / "camera.txt").write_text(camera(r, larger * r.choice([24, 48, 96])))
+    (folder / "camera.txt").write_text(camera(r, r.choice([24, 48, 96])))
     accuracy = 10 ** r.uniform(-5, -2)
     return [tessera, "render", str(path), *extra, "--transfer-function", str(folder / "tf.txt"), "--camera",
             str(folder / "camera.txt"), "--accuracy", repr(accuracy), "-o", str(folder / "o.pfm"), "--verify", "400",
@@ -153,22 +104,6 @@ def run_case(tessera, seed, number, folder, threads):
     return verify["max_error_not_excused"] <= accuracy, words, done.stdout.strip(), accuracy, verify
 
 
-def times(args):
-    ratios, slow = [], 0
-    with tempfile.TemporaryDirectory() as scratch:
-        for number in range(args.first, args.first + args.cases):
-            result = time_case(str(args.tessera), args.seed, number, args.keep or pathlib.Path(scratch), args)
-            if result is None:
-                continue
-            ratio, words = result
-            ratios.append(ratio)
-            slow += ratio > 1.1
-            print(f"{'SLOW' if ratio > 1.1 else 'ok  '} case {number}: {ratio:.2f}: {words}", flush=True)
-    if ratios:
-        print(f"{len(ratios)} cases of 50 ms and more: {slow} slow, median ratio {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
-    sys.exit(1 if slow else 0)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tessera", type=pathlib.Path, default=ROOT / "build/release/apps/tessera")
@@ -177,11 +112,7 @@ def main():
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the last case's files")
-    parser.add_argument("--times", action="store_true", help="compare auto with the fastest method that is near enough")
-    parser.add_argument("--larger", type=int, default=6)
     args = parser.parse_args()
-    if args.times:
-        return times(args)
     broken, worst, pixels, excused = [], 0.0, 0, 0
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.keep or pathlib.Path(scratch)

@@ -77,6 +77,17 @@ class Case:
         return done.returncode, frame, (done.stderr or done.stdout).strip(), picture
 
 
+def counted(frame, tally):
+    """(largest error that is not excused, bound) of an image that was judged, after counting it."""
+    verify = frame["verify"]
+    tally["pixels"] += verify["pixels"]
+    tally["excused"] += verify["excused"]
+    tally["double"] += frame.get("arithmetic") == "double"
+    tally["frames"] += 1
+    error = verify["max_error_not_excused"]
+    return math.inf if error is None else error, verify["bound"]
+
+
 def judged(case, methods, tally):
     """Description of what broke, or empty."""
     broken = []
@@ -85,16 +96,10 @@ def judged(case, methods, tally):
         if status not in (0, 4) or frame is None:
             broken.append(f"{' '.join(words)}: status {status}: {said}")
             continue
-        verify = frame["verify"]
-        error, bound = verify["max_error_not_excused"], verify["bound"]
-        tally["pixels"] += verify["pixels"]
-        tally["excused"] += verify["excused"]
-        tally["double"] += frame.get("arithmetic") == "double"
-        tally["frames"] += 1
-        if error is None or not error <= bound:
-            error = math.inf if error is None else error
+        error, bound = counted(frame, tally)
+        if not error <= bound:
             broken.append(f"{' '.join(words)}: {error:.3g} of {bound:g}")
-        tally["worst"] = max(tally["worst"], (math.inf if error is None else error) / bound)
+        tally["worst"] = max(tally["worst"], error / bound)
     return broken
 
 

@@ -4,6 +4,7 @@ reference: written for readability, from docs/ACCURACY.md. Places are parameters
 import bisect
 import math
 
+from promise_cases.files import camera_text
 from promise_cases.perspective_ties import cross, dot, plus, unit
 
 AMBIENT, DIFFUSE, SPECULAR, SHININESS = 0.2, 0.8, 0.2, 32
@@ -24,10 +25,8 @@ class Camera:
         self.up = cross(self.right, self.forward)
 
     def text(self):
-        words = lambda v: " ".join(repr(float(x)) for x in v)
         lens = f"parallel_scale {self.scale!r}" if self.angle is None else f"view_angle {self.angle!r}"
-        return (f"position {words(self.eye)}\nfocal_point {words(self.focal)}\nview_up {words(self.view_up)}\n{lens}\n"
-                f"size {self.width} {self.height}\n")
+        return camera_text(self.eye, self.focal, self.view_up, lens, self.width, self.height)
 
     def ray(self, pixel):
         """(origin, direction) through the centre of a pixel, counted row by row."""

@@ -72,16 +72,13 @@ def camera(r, corner, most=48):
     if kind == "inside":
         eye = [c * r.uniform(0.05, 0.95) for c in corner]
     focus = [e - away * v for e, v in zip(eye, direction)]
-    line = lambda name, numbers: f"{name} {' '.join(repr(float(v)) for v in numbers)}\n"
-    text = line("position", eye) + line("focal_point", focus) + line("view_up", up)
     if kind == "orthographic":
-        text += line("parallel_scale", [size * 10 ** r.uniform(-1.5, -0.25)])
+        lens = f"parallel_scale {size * 10 ** r.uniform(-1.5, -0.25)!r}"
     else:
         angle = r.uniform(30, 130) if kind == "inside" else 2 * math.degrees(math.atan(0.5 * size / away))
-        text += line("view_angle", [min(angle * 10 ** r.uniform(-1.2, 0.1), 150)])
-    if r.random() < 0.1:
-        text += line("clipping_range", [max(1e-3, away - size * r.uniform(0, 0.4)), away + size])
-    return kind, text + f"size {r.randint(16, most)} {r.randint(16, most)}\n"
+        lens = f"view_angle {min(angle * 10 ** r.uniform(-1.2, 0.1), 150)!r}"
+    clip = f"clipping_range {max(1e-3, away - size * r.uniform(0, 0.4))!r} {away + size!r}\n" if r.random() < 0.1 else ""
+    return kind, files.camera_text(eye, focus, up, lens, r.randint(16, most), r.randint(16, most), clip)
 
 
 def options(r):

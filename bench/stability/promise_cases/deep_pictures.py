@@ -3,7 +3,7 @@
 image; cut anywhere in depth, as OpenEXR interprets deep pixels, they equal the image that ends there, which _oracle.py
 computes from the scene with one more clip.
 """
-from promise_cases import _exr, _oracle, grid_scenes, mesh_scenes
+from promise_cases import _exr, grid_scenes, mesh_scenes
 from promise_cases.perspective_ties import plus
 
 FLAT, CUT = 1e-5, 1e-3
@@ -47,7 +47,7 @@ def check(case, methods, tally):
         return False, f"deep: status {status}: {said}"
     _, _, whole = _exr.read(flat_path)
     _, _, samples = _exr.read(path)
-    broken, function = [], _oracle.Function(made["function"])
+    broken = []
     tally["frames"] += 1
     tally["pixels"] += len(whole["R"])
     for n in range(len(whole["R"])):
@@ -58,7 +58,6 @@ def check(case, methods, tally):
         if not off <= 2 * FLAT:  # the accuracy of each
             broken.append(f"pixel {n}: {off:.3g} from the picture")
     view, scene = made["view"], made["scene"]
-    is_grid = made["input"][0].suffix == ".vti"
     for n, cut in zip(made["pixels"], made["cuts"]):
         if not samples["Z"][n]:
             continue
@@ -67,8 +66,7 @@ def check(case, methods, tally):
             continue
         end = low + cut * (high - low)
         planes = [*scene.get("planes", []), (plus(view.eye, (end, view.forward)), [-x for x in view.forward])]
-        pixel, of = (_oracle.grid_pixel, _oracle.Grid) if is_grid else (_oracle.mesh_pixel, _oracle.Mesh)
-        truth = pixel(of(*made["oracle"]), function, view, n, **{**scene, "planes": planes})
+        truth = mesh_scenes.pixel_of(made, planes=planes)(n)
         off = max(abs(a - b) for a, b in zip(composited(samples, n, end), truth))
         tally["worst"] = max(tally["worst"], off / CUT)
         if not off <= CUT:

@@ -16,8 +16,7 @@ def lengthwise(r, folder):
     scalars = [r.choice([0.5, 0.5 + 0.1 * p[0] + 0.03 * p[2]]) for p in points] if r.random() < 0.5 else [0.5] * len(points)
     dense, beside, angle = 10 ** r.uniform(1, 3), 10 ** r.uniform(-1.5, 0.6), r.uniform(90, 174)
     knots = [(0.0, 0.2, 0.4, 0.9, dense), (1.0, 0.9, 0.5, 0.2, r.random() * dense)]
-    camera = (f"position {r.uniform(-0.3, 0.3)!r} {beside!r} 0\nfocal_point 0 {beside - r.choice([0, 0, r.uniform(-1, 1)])!r} -1\n"
-              f"view_up 0 1 0\nview_angle {angle!r}\nsize 24 24\n")
+    camera = files.camera_text((r.uniform(-0.3, 0.3), beside, 0), (0, beside - r.choice([0, 0, r.uniform(-1, 1)]), -1), (0, 1, 0), f"view_angle {angle!r}", 24, 24)
     path = files.write_vtu(folder / "mesh.vtu", points, tets, scalars)
     told = f"{thickness:.2g} thick, {length:.2g} long, {ahead:.2g} ahead, {beside:.2g} beside, extinction {dense:.3g}, angle {angle:.0f}"
     return {"input": [path], "function": knots, "camera": camera, "words": told}
@@ -70,8 +69,7 @@ def case(r, folder, tessera):
     if abs(sum(a * b for a, b in zip(up, forward))) > 0.99 * size:
         up = (0.3, 0.5, 0.8) if abs(0.3 * forward[0] + 0.5 * forward[1] + 0.8 * forward[2]) < 0.9 * size else (1, -0.4, 0.1)
     lens = f"parallel_scale {10 ** r.uniform(-1.5, 0.3)!r}" if r.random() < 0.4 else f"view_angle {r.uniform(5, 175)!r}"
-    words = lambda v: " ".join(repr(float(x)) for x in v)
-    camera = f"position {words(eye)}\nfocal_point {words(focal)}\nview_up {words(up)}\n{lens}\nsize 20 20\n"
+    camera = files.camera_text(eye, focal, up, lens, 20, 20)
     path = files.write_vtu(folder / "mesh.vtu", points, tets, scalars)
     told = f"{layers} layers {thickness:.2g} thick, extinction {dense:.3g}, {away:.2g} away, {pattern}, {lens}"
     return {"input": [path], "function": knots, "camera": camera, "words": told}

@@ -25,6 +25,12 @@ def next_float64(value, steps):
     return struct.unpack("<d", struct.pack("<q", bits + (steps if value > 0 else -steps)))[0]
 
 
+def camera_text(eye, focal_point, view_up, lens, width, height, more=""):
+    """A camera file; `lens` is a line of its own, as `view_angle 30`."""
+    line = lambda name, numbers: f"{name} {' '.join(repr(float(x)) for x in numbers)}\n"
+    return line("position", eye) + line("focal_point", focal_point) + line("view_up", view_up) + f"{lens}\n{more}size {width} {height}\n"
+
+
 CODES = {"Float32": "f", "Float64": "d", "UInt8": "B", "Int8": "b", "UInt16": "H", "Int16": "h", "Int32": "i", "UInt32": "I", "Int64": "q"}
 
 

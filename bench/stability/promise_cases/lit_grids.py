@@ -8,12 +8,12 @@ docs/ACCURACY.md). Values are 64-bit and 32-bit floats and integers with a scale
 """
 import math
 
+from promise_cases._oracle import AMBIENT, DIFFUSE, SHININESS, SPECULAR, Camera, Grid, cosine_of
 from promise_cases.files import float32, write_vti
-from promise_cases.perspective_ties import cross, dot, unit
+from promise_cases.perspective_ties import plus, unit
 
 COLOR, EXTINCTION = (0.6, 0.2, 0.4), 1.0
 TOLERANCE = 1e-5
-AMBIENT, DIFFUSE, SPECULAR, SHININESS = 0.2, 0.8, 0.2, 32
 
 
 def case(r, folder, tessera):
@@ -29,68 +29,36 @@ def case(r, folder, tessera):
         values[:layer], values[-layer:] = [low] * layer, [high] * layer
     if kind == "Float32":
         values = [float32(v) for v in values]
-    size = 20
-    centre = [(n - 1) * s / 2 for n, s in zip(counts, spacing)]
+    size, lengths = 20, [(n - 1) * s for n, s in zip(counts, spacing)]
+    centre = [length / 2 for length in lengths]
     while True:
         towards = unit([r.uniform(-1, 1) for _ in range(3)])
         if abs(towards[2]) < 0.95:
             break
-    far = 3 * math.hypot(*((n - 1) * s for n, s in zip(counts, spacing)))
-    eye = [c - far * t for c, t in zip(centre, towards)]
-    scale = 0.5 * math.hypot(*((n - 1) * s for n, s in zip(counts, spacing)))
-    words = lambda v: " ".join(repr(float(x)) for x in v)
-    view = {"eye": eye, "forward": towards, "scale": scale, "size": size}
+    camera = Camera(plus(centre, (-3 * math.hypot(*lengths), towards)), centre, (0, 0, 1), size, size, scale=0.5 * math.hypot(*lengths))
     has_surface = r.random() < 0.3
     args = ["--iso", f"{level!r}:white:0.4"] if has_surface else []
     return {"input": [write_vti(folder / "grid.vti", counts, values, kind=kind, spacing=spacing)],
-            "function": [(low - 1, *COLOR, EXTINCTION), (high + 1, *COLOR, EXTINCTION)], "args": [*args, "--shade"],
-            "camera": f"position {words(eye)}\nfocal_point {words(centre)}\nview_up 0 0 1\nparallel_scale {scale!r}\nsize {size} {size}\n",
-            "grid": (counts, spacing, values), "view": view, "judge": None if has_surface else sorted(r.sample(range(size * size), 40)),
+            "function": [(low - 1, *COLOR, EXTINCTION), (high + 1, *COLOR, EXTINCTION)], "args": [*args, "--shade"], "camera": camera.text(),
+            "grid": Grid(counts, spacing, (0, 0, 0), values), "view": camera, "judge": None if has_surface else sorted(r.sample(range(size * size), 40)),
             "methods": [["--integrator", "exact"], ["--accuracy", "1e-5"]],
             "words": f"{kind}, differences {differences:.3g}, {'surface, ' if has_surface else ''}{'x'.join(map(str, counts))}"}
 
 
 def oracle(made, number):
     """RGB of a pixel: the voxels along its ray, each with the light of its own gradient."""
-    (nx, ny, nz), spacing, values = made["grid"]
-    view = made["view"]
-    right = unit(cross(view["forward"], (0, 0, 1)))
-    up = cross(right, view["forward"])
-    pixel = 2 * view["scale"] / view["size"]
-    x, y = number % view["size"] + 0.5 - view["size"] / 2, view["size"] / 2 - (number // view["size"] + 0.5)
-    origin = [(e + pixel * (x * a + y * b)) / s for e, a, b, s in zip(view["eye"], right, up, spacing)]
-    step = [f / s for f, s in zip(view["forward"], spacing)]
-    planes = set()
-    begin, end = -math.inf, math.inf
-    for axis, n in enumerate((nx, ny, nz)):
-        if step[axis] == 0:
-            if not 0 <= origin[axis] <= n - 1:
-                return 0.0, 0.0, 0.0
-            continue
-        at = sorted((k - origin[axis]) / step[axis] for k in range(n))
-        begin, end = max(begin, at[0]), min(end, at[-1])
-        planes.update(at)
-    if not begin < end:
-        return 0.0, 0.0, 0.0
-    places = [begin, *sorted(p for p in planes if begin < p < end), end]
+    origin, direction = made["view"].ray(number)
     through, light = 1.0, [0.0, 0.0, 0.0]
-    for a, b in zip(places, places[1:]):
-        middle = [o + (a + b) / 2 * s for o, s in zip(origin, step)]
-        cell = [min(max(int(m), 0), n - 2) for m, n in zip(middle, (nx, ny, nz))]
-        f = [m - c for m, c in zip(middle, cell)]
-        v = [values[cell[0] + i + nx * (cell[1] + j + ny * (cell[2] + k))] for k in (0, 1) for j in (0, 1) for i in (0, 1)]
-        mean = lambda d, p, q: (d[0] * (1 - p) + d[1] * p) * (1 - q) + (d[2] * (1 - p) + d[3] * p) * q
-        g = [mean((v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6]), f[1], f[2]) / spacing[0],
-             mean((v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5]), f[0], f[2]) / spacing[1],
-             mean((v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]), f[0], f[1]) / spacing[2]]
+    for front, back, voxel in made["grid"].stretches(origin, direction, 0.0, math.inf):
+        gradient = made["grid"].field(voxel, plus(origin, ((front + back) / 2, direction)))[1]
         own, white = 1.0, 0.0
-        if any(g):
-            cosine = min(abs(dot(unit(g), view["forward"])), 1.0)  # the light is at the eye
+        if any(gradient):
+            cosine = cosine_of(gradient, direction)  # the light is at the eye
             own, white = AMBIENT + DIFFUSE * cosine, SPECULAR * cosine ** SHININESS
-        opacity = -math.expm1(-EXTINCTION * (b - a))
+        opacity = -math.expm1(-EXTINCTION * (back - front))
         light = [x + through * opacity * (own * c + white) for x, c in zip(light, COLOR)]
         through *= 1 - opacity
-    return tuple(light)
+    return light
 
 
 def check(case, methods, tally):

@@ -20,11 +20,7 @@ def case(r, folder, tessera):
 def layers_of(made, number):
     """[(rgb, opacity)] of a pixel, by the oracle."""
     light = _oracle.LayeredLight(*made["peel"])
-    scene, function = made["scene"], _oracle.Function(made["function"])
-    if made["input"][0].suffix == ".vti":
-        _oracle.grid_pixel(_oracle.Grid(*made["oracle"]), function, made["view"], number, light=light, **scene)
-    else:
-        _oracle.mesh_pixel(_oracle.Mesh(*made["oracle"]), function, made["view"], number, light=light, **scene)
+    mesh_scenes.pixel_of(made, light=light)(number)
     return light.layers()
 
 
@@ -40,12 +36,8 @@ def check(case, methods, tally):
     if status not in (0, 4) or frame is None:
         return False, f"status {status}: {said}"
     broken = []
-    error = frame["verify"]["max_error_not_excused"]
-    tally["pixels"] += frame["verify"]["pixels"]
-    tally["excused"] += frame["verify"]["excused"]
-    tally["frames"] += 1
-    tally["double"] += frame.get("arithmetic") == "double"
-    if status == 4 or not error <= frame["verify"]["bound"]:
+    error, bound = promises.counted(frame, tally)
+    if status == 4 or not error <= bound:
         broken.append(f"{error} from the reference")
     _, _, whole = _exr.read(path)
     layers = [_exr.read(path.with_name(f"picture.layer{n + 1}.exr"))[2] for n in range(count)]

@@ -9,7 +9,7 @@ cell data, so that the wrong side is visible. The reference does not decide whic
 import array
 import math
 
-from promise_cases.files import split_box, write_vtu
+from promise_cases.files import camera_text, split_box, write_vtu
 
 # Pixels to the right; down a thousandth of that, because no edge here is that steep. Edges that pass a centre by less
 # than the last shift count as passing through it; 1e-4 was not small enough: faces through the eye pass whole rows of
@@ -72,9 +72,7 @@ class View:
         self.per_tangent = self.height / 2 / math.tan(math.radians(self.angle) / 2)
 
     def camera(self):
-        words = lambda v: " ".join(repr(x) for x in v)
-        return (f"position {words(self.eye)}\nfocal_point {words(self.focal)}\nview_up {words(self.view_up)}\n"
-                f"view_angle {self.angle!r}\nsize {self.width} {self.height}\n")
+        return camera_text(self.eye, self.focal, self.view_up, f"view_angle {self.angle!r}", self.width, self.height)
 
     def point(self, x, y, depth):
         """The world point at a pixel position and depth."""
@@ -169,6 +167,8 @@ def values_of(path):
 
 
 def check(case, methods, tally):
+    import promises  # the script that imports this module
+
     broken = []
     for words in methods:
         pictures = []
@@ -178,13 +178,8 @@ def check(case, methods, tally):
             if status not in (0, 4) or frame is None:
                 return False, f"{' '.join(words)}: status {status}: {said}"
             if n == 0:
-                verify = frame["verify"]
-                tally["pixels"] += verify["pixels"]
-                tally["excused"] += verify["excused"]
-                tally["frames"] += 1
-                tally["double"] += frame.get("arithmetic") == "double"
-                error, bound = verify["max_error_not_excused"], verify["bound"]
-                if error is None or not error <= bound:
+                error, bound = promises.counted(frame, tally)
+                if not error <= bound:
                     broken.append(f"{' '.join(words)}: {error} from the reference")
             pictures.append(values_of(path))
         at, far, near = pictures

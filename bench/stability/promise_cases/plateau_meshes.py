@@ -34,8 +34,7 @@ def camera(r, size, near=2.2, far=5.0):
     eye = [a + distance * t for a, t in zip(at, towards)]
     if distance == 0:
         at = [a - t for a, t in zip(at, towards)]
-    words = lambda v: " ".join(repr(x) for x in v)
-    return f"position {words(eye)}\nfocal_point {words(at)}\nview_up {words(up)}\n{lens}\nsize {size} {size}\n"
+    return files.camera_text(eye, at, up, lens, size, size)
 
 
 def mesh(r):

@@ -8,7 +8,7 @@ Knots are at random values: a plateau of samples at exactly a step's value is an
 """
 import math
 
-from . import files
+from . import _volumes, files
 
 KINDS = ["Float32", "Float32", "Float64", "UInt8", "UInt8", "UInt16", "Int16"]
 LEVELS = {"UInt8": 255, "UInt16": 65535, "Int16": 30000}
@@ -105,35 +105,6 @@ def function(r, low, high, size):
     return f"{kind}, extinction x size {most * size:.3g}, fog {fog * size:.3g}", [(v, *color(), e) for v, e in knots]
 
 
-def camera(r, low, high):
-    center = [(a + b) / 2 for a, b in zip(low, high)]
-    size = math.dist(low, high)
-    direction = [r.gauss(0, 1) for _ in range(3)]
-    if r.random() < 0.15:
-        direction = r.choice([[1, 0, 0], [0, 1, 0], [0, 0, -1], [1, 1, 0]])
-    long = math.sqrt(sum(v * v for v in direction))
-    direction = [v / long for v in direction]
-    up = min(([1, 0, 0], [0, 1, 0], [0, 0, 1]), key=lambda u: abs(sum(a * b for a, b in zip(u, direction))))
-    kind = r.choice(["orthographic", "perspective", "inside"])
-    if kind == "inside":
-        eye = [a + (b - a) * r.uniform(0.1, 0.9) for a, b in zip(low, high)]
-        away, angle = size, r.uniform(30, 130)
-    else:
-        away = size * r.uniform(0.8, 4)
-        eye = [c + away * v for c, v in zip(center, direction)]
-        angle = 2 * math.degrees(math.atan(0.5 * size / away)) * 10 ** r.uniform(-1.2, 0.1)
-    focus = [e - away * v for e, v in zip(eye, direction)]
-    line = lambda name, values: f"{name} {' '.join(repr(float(v)) for v in values)}\n"
-    text = line("position", eye) + line("focal_point", focus) + line("view_up", up)
-    text += line("parallel_scale", [size * 10 ** r.uniform(-1.3, -0.25)]) if kind == "orthographic" else line("view_angle", [min(angle, 150)])
-    near = r.random() < 0.25
-    if near:
-        begin = away * r.uniform(0.7, 1.1) if kind != "inside" else size * r.uniform(0, 0.2)
-        text += line("clipping_range", [max(begin, 1e-3 * size), begin + size * r.uniform(0.2, 3)])
-    pixels = f"size {r.randint(16, 48)} {r.randint(16, 48)}\n"
-    return kind + (", near plane" if near else ""), text + pixels
-
-
 def case(r, folder, tessera):
     kind = r.choice(KINDS)
     association = r.choice(["point", "point", "point", "cell"])
@@ -159,27 +130,13 @@ def case(r, folder, tessera):
         if kind == "Float32":
             values = [files.float32(v) for v in values]
     low, high = min(values), max(values)
-    spacing = [1.0] * 3 if r.random() < 0.5 else [10 ** r.uniform(-1, 1) for _ in range(3)]
-    rectilinear = r.random() < 0.2
-    if rectilinear:
-        axes = []
-        for n, s in zip(counts, spacing):
-            places = [0.0]
-            for _ in range(n - 1):
-                places.append(places[-1] + s * 10 ** r.uniform(-1, 0.3))
-            axes.append(places)
-        corner = [a[-1] for a in axes]
-        path = files.write_vtr(folder / "grid.vtr", axes, values, association, kind)
-    else:
-        corner = [s * (n - 1) for s, n in zip(spacing, counts)]
-        path = files.write_vti(folder / "grid.vti", counts, values, association, kind, spacing)
-    size = math.dist([0, 0, 0], corner)
-    how, knots = function(r, low, high, size)
-    view, text = camera(r, [0, 0, 0], corner)
-    made = {"input": [path], "function": knots, "camera": text,
-            "words": f"{name} {kind} {association}{' rectilinear' if rectilinear else ''} {counts}, {how}, {view}"}
-    if r.random() < 0.06:
-        made["args"] = ["--emission", "independent"]
-        made["function"] = [(v, *(c / size for c in rgb), e) for v, *rgb, e in knots]
-        made["words"] += ", independent"
+    independent, how = r.random() < 0.06, ""
+
+    def made_function(size):
+        nonlocal how
+        how, knots = function(r, low, high, size)
+        return [(v, *(c / size if independent else c for c in rgb), e) for v, *rgb, e in knots]
+
+    made = _volumes.made(r, folder, counts, values, association, kind, made_function, name, ["--emission", "independent"] * independent)
+    made["words"] += f", {how}"
     return made

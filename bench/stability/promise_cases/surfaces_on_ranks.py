@@ -55,19 +55,16 @@ def case(r, folder, tessera):
 
 def check(case, methods, tally):
     """Compares one process's image with the reference, and the ranks' image with that."""
+    import promises  # the script that imports this module
+
     made, broken = case.made, []
     for words in methods:
         status, frame, said, path = case.render(words)
         if status not in (0, 4) or frame is None:
             return False, f"{' '.join(words)}: status {status}: {said}"
-        verify = frame["verify"]
-        tally["pixels"] += verify["pixels"]
-        tally["excused"] += verify["excused"]
-        tally["frames"] += 1
-        tally["double"] += frame.get("arithmetic") == "double"
-        if verify["max_error_not_excused"] is None or not verify["max_error_not_excused"] <= verify["bound"]:
-            if made.get("verified", True):
-                broken.append(f"one process: {verify['max_error_not_excused']} from the reference")
+        error, bound = promises.counted(frame, tally)
+        if not error <= bound and made.get("verified", True):
+            broken.append(f"one process: {error} from the reference")
         alone = array.array("f", path.read_bytes().split(b"\n", 3)[3])
         words = [*words, "--partition", made["partition"], "--without", "sharing"]
         status, frame, said, path = case.render(words, verify=False, name="ranks.pfm", ranks=made["ranks"])

@@ -6,7 +6,7 @@ of images of the scene shifted by less and less. Here: some of the tets of a lat
 centres, seen along an axis or in perspective, with a boundary of any opacity, matter or none, and sometimes a clip. The
 reference does not decide which order is right, but must agree (--verify).
 """
-from promise_cases.files import split_box, write_vtu
+from promise_cases.files import camera_text, split_box, write_vtu
 from promise_cases.perspective_ties import METHODS, SHIFTS, View, box_in_plane, check, dot, plus, projective_lattice  # noqa: F401
 
 
@@ -25,9 +25,7 @@ class Along:
         self.centre = [float(r.randint(0, 2)) for _ in range(3)]
 
     def camera(self):
-        words = lambda v: " ".join(repr(x) for x in v)
-        return (f"position {words(plus(self.centre, (-8, self.forward)))}\nfocal_point {words(self.centre)}\n"
-                f"view_up {words(self.up)}\nparallel_scale {self.size * self.pixel / 2!r}\nsize {self.size} {self.size}\n")
+        return camera_text(plus(self.centre, (-8, self.forward)), self.centre, self.up, f"parallel_scale {self.size * self.pixel / 2!r}", self.size, self.size)
 
     def shifted(self, p, shift):
         return plus(p, (-shift * self.pixel, self.right), (shift * 1e-3 * self.pixel, self.up)) if shift else p
