@@ -152,7 +152,7 @@ def command():
             None if value else next(rest, None)
         elif name != "--write":
             words.append(word)
-    return " ".join([f"bench/{pathlib.Path(sys.argv[0]).name}", *words])
+    return " ".join([str(pathlib.Path(sys.argv[0]).resolve().relative_to(ROOT)), *words])
 
 
 def error(x):

@@ -11,6 +11,9 @@ import random
 import shutil
 import subprocess
 
+from promise_cases import files
+from scenes import KNOTS
+
 RANKS = 3
 
 
@@ -18,37 +21,22 @@ def write_vtu(path, points, cells, scalars, ghosts=None):
     """Points that no cell uses are left out, as by partitioners."""
     used = sorted({v for c in cells for v in c})
     number = {v: i for i, v in enumerate(used)}
-    join = lambda values: " ".join(values)
-    ghost = (f'<DataArray type="UInt8" Name="vtkGhostType" format="ascii">{join(str(g) for g in ghosts)}</DataArray>'
-             if ghosts is not None else "")
-    path.write_text(f'''<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid>
-<Piece NumberOfPoints="{len(used)}" NumberOfCells="{len(cells)}">
-<PointData><DataArray type="Float64" Name="f" format="ascii">{join(repr(scalars[v]) for v in used)}</DataArray></PointData>
-<CellData>{ghost}</CellData>
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">{join(repr(x) for v in used for x in points[v])}</DataArray></Points>
-<Cells><DataArray type="Int64" Name="connectivity" format="ascii">{join(str(number[v]) for c in cells for v in c)}</DataArray>
-<DataArray type="Int64" Name="offsets" format="ascii">{join(str(4 * (i + 1)) for i in range(len(cells)))}</DataArray>
-<DataArray type="UInt8" Name="types" format="ascii">{join("10" for _ in cells)}</DataArray></Cells>
-</Piece></UnstructuredGrid></VTKFile>
-''')
-    return path
+    cells = [[number[v] for v in cell] for cell in cells]
+    more = f"<CellData>{files.array('vtkGhostType', 'UInt8', ghosts)}</CellData>\n" if ghosts is not None else ""
+    return files.write_vtu(path, [points[v] for v in used], cells, [scalars[v] for v in used], more=more)
 
 
 def write_pvtu(folder, name, pieces, points, scalars):
     """`pieces`: lists of (cell, ghost)."""
     ghosts = any(g for piece in pieces for _, g in piece)
-    sources = []
-    for i, piece in enumerate(pieces):
-        file = write_vtu(folder / f"{name}-{i}.vtu", points, [c for c, _ in piece], scalars,
-                         [g for _, g in piece] if ghosts else None)
-        sources.append(f'<Piece Source="{file.name}"/>')
+    sources = [write_vtu(folder / f"{name}-{i}.vtu", points, [c for c, _ in piece], scalars, [g for _, g in piece] if ghosts else None).name
+               for i, piece in enumerate(pieces)]
     path = folder / f"{name}.pvtu"
-    path.write_text(f'''<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><PUnstructuredGrid GhostLevel="{int(ghosts)}">
+    path.write_text(files.document("PUnstructuredGrid", f''' GhostLevel="{int(ghosts)}">
 <PPointData><PDataArray type="Float64" Name="f"/></PPointData>
 <PCellData>{'<PDataArray type="UInt8" Name="vtkGhostType"/>' if ghosts else ""}</PCellData>
 <PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>
-{"".join(sources)}</PUnstructuredGrid></VTKFile>
-''')
+{"".join(f'<Piece Source="{source}"/>' for source in sources)}'''))
     return path
 
 
@@ -87,15 +75,16 @@ def measure(program, maker, folder):
         return []
     points, cells, scalars = maker.loaded(maker.generated("cube", ".tets", n=6))
     whole = write_vtu(folder / "whole.vtu", points, cells, scalars)
+    function = maker.function("partitions", KNOTS)  # the range of the default one is a sample's, which depends on the order of cells
     env = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
 
     def picture(file, ranks, *words):
         out = folder / "partition.pfm"
         out.unlink(missing_ok=True)
-        command = [str(program), "render", str(file), "-o", str(out), "--size", "96x96", "--opacity-scale", "3", "--quiet",
+        command = [str(program), "render", str(file), "-o", str(out), "--size", "96x96", "--transfer-function", str(function), "--quiet",
                    "--threads", "1", *words]
         if ranks:
-            command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
+            command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command, "--without", "sharing"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=env)
         if done.returncode:
             raise RuntimeError(done.stderr.strip().split("\n")[0])

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Varies one parameter after the other until a method breaks.
 
-    bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
-        [--large] [--json FILE [--resume]] [--document docs/RESULTS.md] [--figure docs/images/stability.svg]
+    bench/stability/stability.py [--only WORD,...] [--reduced] [--large] [--json FILE [--resume]] [--write]
 
 Each image is judged by `--verify` against the double-precision reference of the same scene. For every method: the
 first value at which its error exceeds 1e-3, and the first at which it fails completely (no image, NaN, a crash). Partitions
 over MPI are compared with one process (partitions.py). Exits with status 1 if the default breaks its promise anywhere: 1e-4,
 except for excused pixels, which may be 1e-4 of all that were examined. `--reduced`: the first and last value of each
-stress, only the default method; used by the tests. `--large`: also images of 16384 x 16384 (6 GB, minutes). Needs
-only Python's standard library. `--resume`: results already in the file of `--json` are not computed again, and all of it goes into
-the document; so an interrupted run, or a single changed stress (removed from FILE), needs no complete run.
+stress, only the default method; used by the tests. `--large`: also images of 16384 x 16384 (6 GB, minutes). `--resume`:
+results already in the file of `--json` are not computed again, and all of it goes into the document; so an interrupted run, or
+a single changed stress (removed from FILE), needs no complete run. `--write` writes docs/RESULTS.md and docs/images/stability.svg.
 """
 import argparse
 import json
@@ -20,14 +19,14 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import textwrap
 import time
 
 import partitions
 import scenes
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-BEGIN, END = "<!-- stability.py begin -->", "<!-- stability.py end -->"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from results import ROOT, Section  # noqa: E402
+
 MESH = {"default": [], "exact": ["--integrator", "exact"], "partial": ["--integrator", "partial"],
         "preintegrated:128": ["--integrator", "preintegrated"], "sampled:4": ["--integrator", "sampled:4"],
         "paper (scanline, sampled:8)": ["--rasterizer", "scanline", "--integrator", "sampled:8"]}
@@ -114,7 +113,7 @@ def words_of(method):
 def measure(args, folder):
     runner = Runner(args.tessera, folder, args.threads)
     maker = scenes.Maker(folder, runner.generate)
-    out, broken, start = [], [], time.monotonic()
+    out, broken = [], []
     before = json.loads(args.json.read_text()) if args.resume and args.json.exists() else {"stresses": [], "partitions": []}
     earlier = {(s["kind"], s["name"]): s for s in before["stresses"]}
     kinds = [("mesh", scenes.mesh_stresses(maker) + (scenes.large_stresses(maker) if args.large else []), MESH),
@@ -129,9 +128,6 @@ def measure(args, folder):
                 continue
             if args.only and not any(w in name for w in args.only.split(",")):
                 continue
-            if args.seconds and time.monotonic() - start > args.seconds:
-                print(f"{name}: not run, --seconds are over")
-                continue
             if args.reduced:
                 values = [v for v in (values[0], values[-1])]
                 if name in ("depth complexity", "opacity 1e-9 a segment"):
@@ -144,7 +140,7 @@ def measure(args, folder):
                 except subprocess.CalledProcessError as error:
                     made[value] = error.stderr.strip()
             for method, words in methods.items():
-                if args.methods and method.split()[0].split(",")[0] not in args.methods.split(","):
+                if args.reduced and method != "default":
                     continue
                 results, begin = [], time.monotonic()
                 for value in values:
@@ -206,47 +202,35 @@ def largest(method, stresses):
     return exponent(max((r.get("error", math.inf) for s in stresses for r in s["methods"].get(method, {"results": []})["results"]), default=0))
 
 
-def document(path, stresses, rows, figure):
-    lines = [BEGIN, ""]
-    if figure:
-        lines += [f"![error against each stress's parameter](images/{figure.name})", ""]
+def document(section, stresses, rows):
+    section.text("![error against each stress's parameter](images/stability.svg)")
     for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids")):
         mine = [s for s in stresses if s["kind"] == kind]
-        if not mine:
-            continue
         methods = [m for m in dict.fromkeys(m for s in mine for m in s["methods"]) if m != "exact"]
         still = [s for s in mine if all(map(steady, s["methods"].values()))]
-        lines += [f"### {title}", ""]
+        section.text(f"### {title}")
         if still:
-            says = ("These change no method's result: " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". The default's errors there "
-                    f"reach {largest('default', still)}, those of `exact` anywhere {largest('exact', mine)}.")
-            lines += [textwrap.fill(says, 160, break_long_words=False, break_on_hyphens=False), ""]
-        lines += ["| stress, parameter | values | " + " | ".join(methods) + " |", "|---|---|" + "---|" * len(methods)]
+            section.text("These change no method's result: " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". The default's errors there "
+                         f"reach {largest('default', still)}, those of `exact` anywhere {largest('exact', mine)}.")
+        section.table("l" * (2 + len(methods)), "stress, parameter", "values", *methods)
         for s in mine:
-            if s in still:
-                continue
-            cells = [words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods]
-            lines.append(f"| {s['name']}: {s['parameter']} | {values_of(s)} | " + " | ".join(cells) + " |")
-        lines.append("")
-    printed = [s for s in stresses if s["kind"] == "printed"]
-    if printed:
-        lines += ["### The printed methods' own limits", "", "| limit, parameter | values | what becomes of them |", "|---|---|---|"]
-        for s in printed:
-            words = [f"{m}: {words_of(d)}" for m, d in s["methods"].items()]
-            lines.append(f"| {s['name']}: {s['parameter']} | {values_of(s)} | " + "; ".join(words) + " |")
-        lines.append("")
-    if rows:
-        lines += ["### Partitions over MPI", "", "Against one process with the whole mesh; `segments` promises its bits, `runs` 2e-6.", "",
-                  "| partitions (ranks) | `segments`: the same bits | `runs`: largest difference |", "|---|---|---|"]
-        alike = {}
-        for r in rows:
-            found = (f"{'yes' if r['same_bits'] else '**no**'} | {r['runs_difference']:.1e}" if "failed" not in r else f"**failed** | {r['failed']}")
-            alike.setdefault(found, []).append(f"{r['partition']} ({r['ranks']})")
-        lines += [f"| {'; '.join(names)} | {found} |" for found, names in alike.items()]
-        lines.append("")
-    text = path.read_text()
-    begin, end = text.index(BEGIN), text.index(END)
-    path.write_text(text[:begin] + "\n".join(lines) + "\n" + text[end:])
+            if s not in still:
+                section.row(f"{s['name']}: {s['parameter']}", values_of(s), *(words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods))
+    section.text("### The printed methods' own limits")
+    section.table("lll", "limit, parameter", "values", "what becomes of them")
+    for s in stresses:
+        if s["kind"] == "printed":
+            section.row(f"{s['name']}: {s['parameter']}", values_of(s), "; ".join(f"{m}: {words_of(d)}" for m, d in s["methods"].items()))
+    section.text("### Partitions over MPI")
+    section.text("Against one process with the whole mesh; `segments` promises its bits, `runs` 2e-6.")
+    section.table("lll", "partitions (ranks)", "`segments`: the same bits", "`runs`: largest difference")
+    alike = {}
+    for r in rows:
+        found = ("**failed**", r["failed"]) if "failed" in r else ("yes" if r["same_bits"] else "**no**", f"{r['runs_difference']:.1e}")
+        alike.setdefault(found, []).append(f"{r['partition']} ({r['ranks']})")
+    for found, names in alike.items():
+        section.row("; ".join(names), *found)
+    section.keep()
 
 
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
@@ -304,26 +288,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tessera", type=pathlib.Path, default=ROOT / "build/release/apps/tessera")
     parser.add_argument("--only", help="words in stresses' names")
-    parser.add_argument("--methods", help="methods by their first word")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--seconds", type=float, help="begin no stress after these")
     parser.add_argument("--reduced", action="store_true")
     parser.add_argument("--large", action="store_true", help="pictures of 16384 x 16384 too")
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--resume", action="store_true", help="keep what --json holds")
-    parser.add_argument("--document", type=pathlib.Path)
-    parser.add_argument("--figure", type=pathlib.Path)
+    parser.add_argument("--write", action="store_true", help="write the tables and the figure into docs/")
     args = parser.parse_args()
-    if args.reduced:
-        args.methods = "default"
     with tempfile.TemporaryDirectory() as folder:
-        start = time.monotonic()
+        start, section = time.monotonic(), Section(args)
         stresses, rows, broken = measure(args, pathlib.Path(folder))
     save(args, stresses, rows)
-    if args.figure:
-        figure(args.figure, stresses)
-    if args.document:
-        document(args.document, stresses, rows, args.figure)
+    if args.write:
+        document(section, stresses, rows)
+        figure(ROOT / "docs" / "images" / "stability.svg", stresses)
     for name, value, result in broken:
         print(f"default BROKEN: {name} at {value}: {result.get('failed', result.get('error'))}\n    {result.get('command', '')}")
     excused, pixels = excused_of(stresses)

@@ -52,9 +52,9 @@ def field(association, kind, values):
     return f'<{where} Scalars="f">{array("f", kind, values)}</{where}>\n'
 
 
-def write_vtu(path, points, tets, scalars, association="point", kind="Float64"):
-    """Tetrahedra: `points` triples, `tets` quadruples of indices, one scalar per point or cell. Points are doubles."""
-    body = (f'>\n<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(tets)}">\n' + field(association, kind, scalars) +
+def write_vtu(path, points, tets, scalars, association="point", kind="Float64", more=""):
+    """Tetrahedra: `points` triples, `tets` quadruples of indices, one scalar per point or cell. Points are doubles. `more`: XML."""
+    body = (f'>\n<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(tets)}">\n' + field(association, kind, scalars) + more +
             "<Points>" + array("Points", "Float64", [x for p in points for x in p], 3) + "</Points>\n<Cells>" +
             array("connectivity", "Int64", [v for t in tets for v in t]) +
             array("offsets", "Int64", [4 * (i + 1) for i in range(len(tets))]) +
