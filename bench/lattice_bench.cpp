@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lattice path's kernels: nanoseconds per cell (set up and rasterized), per segment (scattered to its pixel's
 // window) and per segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction
-// set, on one thread; and whole frames on one and two threads.
+// set, on one thread.
 //
 //   lattice_bench --benchmark_filter=composite/.*AVX3
 //
@@ -22,7 +22,6 @@
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/lattice_frame.hpp"
-#include "frame/mesh/render.hpp"
 #include "integrals/lane_table.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/lattice/lattice_rasterizer.hpp"
@@ -166,27 +165,6 @@ void kernels(benchmark::State& state, const scene::TetMesh& mesh, int pixels, st
   choose(0);
 }
 
-void frames(benchmark::State& state, const scene::TetMesh& mesh, int threads, std::int64_t target) {
-  choose(target);
-  Settings settings;
-  settings.integrator.kind = scene::IntegratorKind::exact;
-  settings.threads = threads;
-  frame::Renderer renderer(mesh, settings);
-  const scene::TransferFunction function = datasets::benchmark_transfer_function();
-  frame::FrameStatistics statistics;
-  double best = std::numeric_limits<double>::infinity();
-  for (auto _ : state) {
-    const auto start = Clock::now();
-    renderer.render(figures_camera(), {1024, 1024}, function, &statistics);
-    const double seconds = seconds_since(start);
-    state.SetIterationTime(seconds);
-    best = std::min(best, seconds);
-  }
-  state.counters["least_ms"] = 1e3 * best;
-  state.counters["Mseg_s"] = 1e-6 * static_cast<double>(statistics.segments) / best;
-  choose(0);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -198,11 +176,6 @@ int main(int argc, char** argv) {
     for (const int pixels : {192, 384, 768, 1536})
       benchmark::RegisterBenchmark(fmt::format("kernels/{}/{}", pixels, name).c_str(),
                                    [&mesh, pixels, target](benchmark::State& s) { kernels(s, mesh, pixels, target); })
-          ->UseManualTime()
-          ->Unit(benchmark::kMillisecond);
-    for (const int threads : {1, 2})
-      benchmark::RegisterBenchmark(fmt::format("frame/{}/{}_threads", name, threads).c_str(),
-                                   [&mesh, threads, target](benchmark::State& s) { frames(s, mesh, threads, target); })
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);
   }
