@@ -14,7 +14,7 @@ For changes that must not change an image. Scenes are derived from a seed, so th
   device  6 of the meshes' views through `--compositor gl-compute` and gl-fragment on OSMesa
 
 Prints differences, with the number of pixels and the largest difference, and exits with status 1 if there are any. The
-old program reads the same files as the new one; both take their threads from `--threads`. Needs Python's standard library.
+old program reads the same files as the new one; both take their threads from `--threads`.
 """
 import argparse
 import array
@@ -29,8 +29,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "stability"))
 import auto_random  # random views and transfer functions
 from promise_cases import files
+from results import MPI, knots_of, written
 
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 MESHES = [("cube", "n=10"), ("cube", "n=9", "cell_data=1"), ("regular", "nx=12", "ny=8", "nz=10"), ("graded", "n=12", "volume_ratio=1e8"),
           ("slivers", "n=6", "aspect=1e6"), ("annulus", "n=32", "seam=1"), ("shells", "count=3"), ("bars", "n=12", "inverted=2"),
           ("ball", "levels=3")]
@@ -44,16 +44,11 @@ LARGE = [("cube", ["n=64"], "figures", []), ("cube", ["n=64"], "figures", ["--in
          ("graded", ["n=64"], "figures", []), ("cube", ["n=48", "cell_data=6"], "figures", [])]
 
 
-def figure_knots():
-    lines = (HERE / "transfer_function.txt").read_text().splitlines()
-    return [tuple(map(float, line.split())) for line in lines if line and not line.startswith("#")]
-
-
 def large_function(name):
     if name == "figures":
-        return figure_knots()
+        return knots_of(HERE / "transfer_function.txt")
     if name == "opaque":
-        return [(*k[:4], 40 * k[4] + 20) for k in figure_knots()]
+        return [(*k[:4], 40 * k[4] + 20) for k in knots_of(HERE / "transfer_function.txt")]
     count, r = int(name.split()[0]), random.Random(name)
     return [(i / (count - 1), r.random(), r.random(), r.random(), 5 * r.random()) for i in range(count)]
 
@@ -69,13 +64,13 @@ class Comparison:
             subprocess.run([self.args.old, "generate", kind, path, *words, "--quiet"], check=True, capture_output=True)
         return path
 
-    def text(self, name, content):
-        path = self.folder / name
-        path.write_text(content)
-        return path
-
     def function(self, knots):
-        return self.text("function.txt", "".join(" ".join(repr(float(x)) for x in k) + "\n" for k in knots))
+        return written(self.folder / "function.txt", "".join(" ".join(repr(float(x)) for x in k) + "\n" for k in knots))
+
+    def random_view(self, r):
+        """Words of `tessera render` for a random function and camera."""
+        return ["--transfer-function", self.function(auto_random.transfer_function(r, 0.0, 1.0)), "--camera",
+                written(self.folder / "camera.txt", auto_random.camera(r, r.choice([48, 96, 160])))]
 
     def draw(self, program, name, words, ranks):
         pictures = [self.folder / f"{name}.exr", self.folder / f"{name}.pfm"]
@@ -106,8 +101,7 @@ class Comparison:
         """Arguments of `tessera render` for one view of a mesh."""
         kind, *parameters = MESHES[mesh]
         r = random.Random(f"{self.args.seed}/mesh/{mesh}/{view}")
-        return [self.generate(kind, parameters, ".vtu"), "--transfer-function", self.function(auto_random.transfer_function(r, 0.0, 1.0)),
-                "--camera", self.text("camera.txt", auto_random.camera(r, r.choice([48, 96, 160])))]
+        return [self.generate(kind, parameters, ".vtu"), *self.random_view(r)]
 
     def meshes(self):
         for mesh in range(len(MESHES)):
@@ -127,8 +121,7 @@ class Comparison:
 
     def grid_view(self, inputs, grid, view):
         r = random.Random(f"{self.args.seed}/grid/{grid}/{view}")
-        return [inputs[grid], "--transfer-function", self.function(auto_random.transfer_function(r, 0.0, 1.0)), "--camera",
-                self.text("camera.txt", auto_random.camera(r, r.choice([48, 96, 160]))), "--brick-size", r.choice([5, 32])]
+        return [inputs[grid], *self.random_view(r), "--brick-size", r.choice([5, 32])]
 
     def grids(self):
         inputs = self.grid_inputs()
@@ -145,7 +138,7 @@ class Comparison:
             if "perspective" in words:
                 camera, words = camera.replace("parallel_scale 1.8", "view_angle 36"), []
             self.compare(f"large {kind} {' '.join(parameters)}, {function} {' '.join(words)}",
-                         [self.generate(kind, parameters, ".vtu" if "cell_data" in str(parameters) else ".tets"), "--camera", self.text("camera.txt", camera), "--transfer-function",
+                         [self.generate(kind, parameters, ".vtu" if "cell_data" in str(parameters) else ".tets"), "--camera", written(self.folder / "camera.txt", camera), "--transfer-function",
                           self.function(large_function(function)), *words])
 
     def ranks(self):

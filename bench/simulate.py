@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How long a frame takes on N nodes, and where time is lost: the stages of a real run, replayed on modelled cores and links.
 
-    bench/simulate.py TRACE.json [--gbit 1] [--latency-us 50] [--cores 2 [--shared]] [--threads 1] [--frames-in-flight 2] [--memory-mib 4096]
+    bench/simulate.py TRACE.json [--gbit 10] [--latency-us 50] [--cores 2] [--threads 1]
 
 TRACE.json: from `mpirun -n 2N tessera render ... --projectors N --compositors N --timing TRACE.json`: node i has projector i and compositor i.
 It supplies, by rank, frame and tile: CPU time of projection and of compositing (including packing of finished tiles), bytes of fragments, the
@@ -27,7 +27,6 @@ import argparse
 import collections
 import pathlib
 
-from simulate_assembly import Assembler
 from simulate_engine import Clock, Cores, Links
 from simulate_work import balanced, work_of
 
@@ -35,6 +34,7 @@ BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes per message;
 LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank checks for messages, on average: half of its sleep
 LOOK_CPU = 25e-6 / 2.5e-3  # cores used by a rank's polling
 IDLE_CREDIT = 20e-3  # partly collected credit is returned after this time
+ASSEMBLING = 8  # largest number of threads that assemble an image (frame/ranks/compositor_role.cpp)
 GOODPUT = 1448 / 1538  # of a link: TCP's share of an Ethernet frame, including preamble and gap
 
 
@@ -385,6 +385,93 @@ class Compositor:
             self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.credit, self.number, size)
 
 
+class Assembler:
+    """The first compositor's role: assembles images and writes them."""
+
+    def __init__(self, model):
+        self.model, self.rank = model, model.work.projectors
+        self.unread, self.reading = collections.deque(), False
+        self.todo, self.running = collections.deque(), 0  # messages whose tiles are to be placed: (frame, count)
+        self.placing = collections.Counter()  # such messages of a frame
+        self.ends, self.left, self.pictures = 0, [], []  # times when frames left, and when their images were written
+        self.writing, self.waiting, self.blocked, self.complete = False, 0, False, None
+
+    def send(self, source, frame, tiles, size):
+        """A message of finished tiles; an empty one is the end of the frame."""
+        if self.model.set.assembly:
+            self.model.post(source, self.rank, size, self.receive, frame, tiles)
+        else:
+            self.receive(frame, tiles)
+
+    def receive(self, frame, tiles):
+        self.unread.append((frame, tiles))
+        if not self.reading and not self.blocked:
+            self.read()
+
+    def read(self):
+        self.reading = bool(self.unread)
+        if self.reading:
+            frame, tiles = self.unread.popleft()
+            self.model.compute(self.rank, self.model.work.assemble[0] if self.model.set.assembly else 0.0, self.accept, frame, tiles)
+
+    def accept(self, frame, tiles):
+        if tiles:
+            self.placing[frame] += 1
+            self.todo.append((frame, tiles))
+            self.work()
+        else:
+            self.ends += 1
+            if self.ends % self.model.work.compositors == 0:
+                self.complete = frame
+                self.leave()
+                return
+        self.read()
+
+    def work(self):
+        while self.todo and self.running < min(self.model.set.threads, ASSEMBLING):
+            frame, tiles = self.todo.popleft()
+            self.running += 1
+            self.model.compute(self.rank, self.model.work.assemble[1] * tiles if self.model.set.assembly else 0.0, self.placed, frame)
+
+    def placed(self, frame):
+        self.running -= 1
+        self.placing[frame] -= 1
+        self.work()
+        self.leave()
+
+    def leave(self):
+        """A frame that has ended leaves once its last tiles are in place; the thread that reads messages waits for that."""
+        if self.complete is None or self.placing[self.complete] > 0:
+            return
+        self.complete = None
+        self.left.append(self.model.clock.now)
+        self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
+        self.waiting += 1
+        self.write()
+        if self.waiting > 1:  # one may wait; with more, the assembling thread waits
+            self.blocked, self.reading = True, False
+            return
+        self.read()
+
+    def tell(self):
+        """Informs the projectors that a frame has left."""
+        for projector in self.model.projectors:
+            self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
+
+    def write(self):
+        if self.waiting and not self.writing:
+            self.writing, self.waiting = True, self.waiting - 1
+            self.model.compute(self.rank, self.model.work.write if self.model.set.assembly else 0.0, self.written)
+
+    def written(self):
+        self.writing = False
+        self.pictures.append(self.model.clock.now)
+        self.write()
+        if self.blocked and self.waiting <= 1:
+            self.blocked = False
+            self.read()
+
+
 def losses(work, settings):
     """Seconds per frame, and their components: see above."""
     steps = [("wire", {"bytes_per_second": None, "latency": 0.0, "byte_cpu": 0.0, "look": False}), ("assembly", {"assembly": False}),
@@ -399,19 +486,15 @@ def losses(work, settings):
 
 
 def main():
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("trace", type=pathlib.Path)
     parser.add_argument("--gbit", type=float, default=10)
     parser.add_argument("--latency-us", type=float, default=50)
-    parser.add_argument("--cores", type=float, default=2)
-    parser.add_argument("--shared", action="store_true", help="the cores are those of all nodes together")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--frames-in-flight", type=int, default=2)
-    parser.add_argument("--memory-mib", type=int, default=4096)
+    parser.add_argument("--cores", type=float, default=2, help="of a node")
+    parser.add_argument("--threads", type=int, default=1, help="of a rank")
     args = parser.parse_args()
-    settings = Settings(bytes_per_second=args.gbit * 1e9 / 8 * GOODPUT, latency=args.latency_us * 1e-6, cores=args.cores, shared=args.shared,
-                        threads=args.threads, in_flight=args.frames_in_flight, memory=args.memory_mib << 20)
-    whole, parts = losses(work_of(args.trace), settings)
+    whole, parts = losses(work_of(args.trace), Settings(bytes_per_second=args.gbit * 1e9 / 8 * GOODPUT, latency=args.latency_us * 1e-6, cores=args.cores,
+                                                        threads=args.threads))
     print(f"frame {1e3 * whole:.2f} ms")
     for name, seconds in parts.items():
         print(f"  {name:12} {1e3 * seconds:9.2f} ms {100 * seconds / whole:6.1f} %")
