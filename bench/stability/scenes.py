@@ -73,6 +73,20 @@ def seen_across(m, size):
     return m.camera(f"across-{size}", (2, 1.5, 4), (0, 0, 0), scale=1.5 * h / max(w, h))
 
 
+def along_faces(m, angle, *args, **more):
+    """A lattice whose faces are at an angle to the view; at angle 0 vertices are on pixel centres: 64 pixels over 2 units, cells of 4 pixels."""
+    eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
+    mesh = m.generated("regular", nx=8, ny=8, nz=8, **more)
+    return scene(mesh, "--camera", m.camera(f"edge-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1), *args, verify=4096)
+
+
+def pile(m, layers, thickness=1.0, extinction=3.0, **more):
+    """Layers along the view, seen in their middle."""
+    path = m.generated("stack", layers=int(layers), width=0.3, thickness=float(thickness))
+    return scene(path, "--transfer-function", m.function(f"stack-{extinction:g}", scaled(KNOTS, extinction=extinction)), "--camera",
+                 m.camera("stack", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=0.2), **{"size": "16x16", **more})
+
+
 def powers(first, last, step=1):
     """10^first, 10^(first + step), ..., 10^last."""
     return [10.0 ** e for e in range(first, last + (1 if step > 0 else -1), step)]
@@ -109,12 +123,6 @@ def mesh_stresses(m):
     cube = lambda n=6, **more: m.generated("cube", n=n, **more)
     tf = lambda: ("--transfer-function", f())
 
-    def seen_at(angle):
-        s = m.generated("regular", nx=8, ny=8, nz=8)
-        # Vertices on pixel centres at angle 0: 64 pixels over 2 units, cells of 4 pixels.
-        eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
-        return scene(s, "--camera", m.camera(f"edge-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1), *tf(), verify=4096)
-
     def beside_plane(offset):
         """The eye close to a plane of faces that contains a column of pixel centres, and cell data, which differs on the two sides."""
         s = m.generated("regular", nx=8, ny=8, nz=8, cell_data=1)
@@ -136,14 +144,10 @@ def mesh_stresses(m):
             s += [scalars[v] for v in cell]
         return scene(m.tets(name, p, c, s), *tf())
 
-    def stack(layers=1000, thickness=1.0, extinction=3.0, width=0.3, verify=64):
-        path = m.generated("stack", layers=int(layers), width=width, thickness=float(thickness))
-        knots = scaled(KNOTS, extinction=extinction)
-        look = m.camera("stack", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=0.2)
+    def stack(layers, thickness=1.0, extinction=3.0, verify=8):
         # The reference takes a quarter of a minute at 1e5 cells per ray, too long to run it for every method.
         deep = layers > 3e4
-        return scene(path, "--transfer-function", m.function(f"stack-{extinction:g}", knots), "--camera", look,
-                     verify=1 if deep else verify, size="16x16", methods=("default",) if deep else None)
+        return pile(m, layers, thickness, extinction, verify=1 if deep else verify, methods=("default",) if deep else None)
 
     def neighbours(ratio):
         """A fan of six tets over a hexagon, and under each a neighbour whose height is smaller by the ratio."""
@@ -161,15 +165,9 @@ def mesh_stresses(m):
         knots = m.function(f"scale-{value:g}", scaled(KNOTS, extinction=1 / value))
         return scene(cube(scale=float(value)), "--transfer-function", knots)
 
-    def field(span):
+    def with_field(name, change, **function):
         points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
-        path = m.tets(f"field-{span:g}", points, cells, [s * span or 0.5 for s in scalars])
-        return scene(path, "--transfer-function", m.function(f"field-{span:g}", scaled(KNOTS, values=span or 1)))
-
-    def offset_field(ratio):
-        points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
-        path = m.tets(f"fieldoffset-{ratio:g}", points, cells, [s + ratio for s in scalars])
-        return scene(path, "--transfer-function", m.function(f"fieldoffset-{ratio:g}", scaled(KNOTS, shift=ratio)))
+        return scene(m.tets(name, points, cells, list(map(change, scalars))), "--transfer-function", m.function(name, scaled(KNOTS, **function)))
 
     def with_knots(name, knots):
         return scene(cube(), "--transfer-function", m.function(name, knots))
@@ -228,7 +226,7 @@ def mesh_stresses(m):
         ("slivers", "aspect ratio", powers(2, 14, 2), lambda v: scene(m.generated("slivers", n=4, aspect=v), *tf())),
         ("volume ratio", "largest over smallest cell", powers(1, 15, 2), lambda v: scene(m.generated("graded", n=8, volume_ratio=v), *tf())),
         ("neighbours' volumes", "of two that share a face", powers(0, 12, 3), neighbours),
-        ("edge-on faces", "angle to the view, radian", powers(-1, -15, -2) + [0.0], seen_at),
+        ("edge-on faces", "angle to the view, radian", powers(-1, -15, -2) + [0.0], lambda v: along_faces(m, v, *tf())),
         ("faces along rays", "eye beside their plane, cell sides", powers(-1, -15, -2) + [0.0], beside_plane),
         ("coincident vertices", "share of cells with vertices of their own", [0.0, 0.5, 1.0], unshared),
         ("inverted cells", "0 none, 1 all, 2 every other", [0, 1, 2], lambda v: scene(cube(inverted=v), *tf())),
@@ -242,8 +240,9 @@ def mesh_stresses(m):
         ("plateau at a step", "last places of a float between neighbours", [1e6, 1e4, 256, 16, 1, 0], plateau),
         ("sheet seen lengthwise", "extinction", [1, 10, 100, 200, 300, 1e3, 1e4, 1e6], lengthwise),
         ("oscillations", "over the range", [1, 10, 100, 1000], lambda v: with_knots(f"osc-{v}", oscillating(v))),
-        ("field range", "largest value", [0.0] + powers(-30, 30, 10), field),
-        ("field far from zero", "offset over range", powers(0, 7), offset_field),
+        ("field range", "largest value", [0.0] + powers(-30, 30, 10),
+         lambda v: with_field(f"field-{v:g}", lambda s: s * v or 0.5, values=v or 1)),
+        ("field far from zero", "offset over range", powers(0, 7), lambda v: with_field(f"fieldoffset-{v:g}", lambda s: s + v, shift=v)),
         ("view angle", "degrees", [1, 30, 90, 150, 170, 178, 179], angle),
         ("eye", "place", ["outside", "inside", "on the boundary", "on a face", "on an edge", "in a vertex"], eye),
         ("near plane", "share of the way through", [0.0, 0.25, 0.5, 0.75, 1.0], near),
@@ -251,9 +250,9 @@ def mesh_stresses(m):
         ("tiles", "pixels a side", [1, 7, 31, 32, 33, 1000], lambda v: plain("--tile-size", v, size="101x67")),
         ("memory", "budget", ["64M", "16M", "8M"], lambda v: plain("--memory", v, size="101x67")),
         ("depth complexity", "segments a ray", powers(0, 5), lambda v: stack(v, verify=16)),
-        ("nearly equal depths", "thickness of 1e4 layers", powers(0, -15, -3), lambda v: stack(1e4, v, extinction=3 / v, verify=8)),
-        ("faint segments", "optical depth of each of 1e4", powers(-4, -13, -3), lambda v: stack(1e4, 1.0, extinction=v * 1e4, verify=8)),
-        ("opacity 1e-9 a segment", "segments a ray", powers(2, 5), lambda v: stack(v, 1.0, extinction=1e-9 * v, verify=8)),
+        ("nearly equal depths", "thickness of 1e4 layers", powers(0, -15, -3), lambda v: stack(1e4, v, extinction=3 / v)),
+        ("faint segments", "optical depth of each of 1e4", powers(-4, -13, -3), lambda v: stack(1e4, extinction=v * 1e4)),
+        ("opacity 1e-9 a segment", "segments a ray", powers(2, 5), lambda v: stack(v, extinction=1e-9 * v)),
     ]
 
 
@@ -275,7 +274,6 @@ PRINTED = {"default": [], "sampled:4": ["--integrator", "sampled:4"], "preintegr
 def printed_stresses(m):
     """The limits of the published methods, each with the methods concerned and the default."""
     cube = lambda: m.generated("cube", n=4)
-    look = lambda scale=0.2: m.camera(f"deep-{scale:g}", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=scale)
 
     def peak(width):
         knots = [(0.0, 0.1, 0.2, 0.9, 0.05), (0.5 - width, 0.1, 0.2, 0.9, 0.05), (0.5, 1.0, 0.6, 0.1, 0.5 / width),
@@ -291,26 +289,17 @@ def printed_stresses(m):
         return scene(path, "--transfer-function", knots, "--camera", m.camera(f"edges-{ratio:g}", eye, (0, 0, 0), scale=span),
                      methods=("default", "scanline, exact"))
 
-    def pile(layers, thickness=1.0, extinction=3.0, verify=16, methods=(), size="16x16"):
-        path = m.generated("stack", layers=int(layers), width=0.3, thickness=float(thickness))
-        knots = m.function(f"pile-{extinction:g}", scaled(KNOTS, extinction=extinction))
-        return scene(path, "--transfer-function", knots, "--camera", look(), verify=verify, size=size, methods=("default", *methods))
-
-    def aligned(angle):
-        s = m.generated("regular", nx=8, ny=8, nz=8, cell_data=1)
-        eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
-        return scene(s, "--camera", m.camera(f"aligned-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1),
-                     "--transfer-function", m.function("plain", KNOTS), verify=4096, methods=("default", "scanline, exact"))
-
     half = ("GL, 16-bit blending", "GL, 32-bit blending")
     return [
         ("fixed Ns, thin features", "width of a peak over the range", [0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4], peak),
         ("length over the longest edge", "volume of largest over smallest cell", powers(1, 15, 2), edges),
-        ("16-bit blending", "segments a ray", [1.0, 10.0, 100.0, 1e3], lambda v: pile(v, methods=half)),
-        ("lists longer than a texture", "segments a ray", [4e3, 1.6e4, 3.2e4], lambda v: pile(v, verify=4, methods=("sampled:8", *half[1:]), size="4x4")),
+        ("16-bit blending", "segments a ray", [1.0, 10.0, 100.0, 1e3], lambda v: pile(m, v, verify=16, methods=("default", *half))),
+        ("lists longer than a texture", "segments a ray", [4e3, 1.6e4, 3.2e4], 
+         lambda v: pile(m, v, verify=4, methods=("default", "sampled:8", *half[1:]), size="4x4")),
         ("z_back as the only key", "thickness of 1e3 layers, eye at 5", powers(0, -8, -1),
-         lambda v: pile(1e3, v, extinction=3 / v, methods=("scanline, exact",))),
-        ("no tie rule", "angle of faces to the view, cell data", powers(-1, -9, -2) + [0.0], aligned),
+         lambda v: pile(m, 1e3, v, 3 / v, verify=16, methods=("default", "scanline, exact"))),
+        ("no tie rule", "angle of faces to the view, cell data", powers(-1, -9, -2) + [0.0],
+         lambda v: {**along_faces(m, v, "--transfer-function", m.function("plain", KNOTS), cell_data=1), "methods": ("default", "scanline, exact")}),
     ]
 
 

@@ -147,6 +147,26 @@ def cosine_of(normal, direction):
     return min(abs(dot(unit(normal), direction)), 1.0) if any(normal) else 1.0
 
 
+def clipped(planes, origin, direction):
+    """(near, far, normal at each) of what clips leave of a ray."""
+    near, far, near_normal, far_normal = 0.0, math.inf, None, None
+    for point, normal in planes:
+        rise = dot(normal, direction)
+        place = -dot(normal, plus(origin, (-1, point))) / rise
+        if rise > 0 and place > near:
+            near, near_normal = place, normal
+        elif rise < 0 and place < far:
+            far, far_normal = place, normal
+    return near, far, near_normal, far_normal
+
+
+def lit_by(gradient, camera, direction):
+    """The factor on colors and the white that is added; the light is at the camera, in the view direction."""
+    toward, normal = [-x for x in camera.forward], unit(gradient)
+    n_h = abs(dot(normal, unit(plus(toward, (-1, direction)))))
+    return AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS
+
+
 class Mesh:
     """Tets of positive volume that do not overlap, with one scalar per point or cell."""
 
@@ -200,14 +220,7 @@ def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), 
     which the normal points is kept."""
     origin, direction = camera.ray(pixel)
     light = light or Light()
-    near, far, near_normal, far_normal = 0.0, math.inf, None, None
-    for point, normal in planes:
-        rise, height = dot(normal, direction), dot(normal, plus(origin, (-1, point)))
-        place = -height / rise
-        if rise > 0 and place > near:
-            near, near_normal = place, normal
-        elif rise < 0 and place < far:
-            far, far_normal = place, normal
+    near, far, near_normal, far_normal = clipped(planes, origin, direction)
     for front, back, n, enters, leaves, lines in mesh.stretches(origin, direction):
         is_cut_in, is_cut_out = front < near, back > far
         front, back = max(front, near), min(back, far)
@@ -217,14 +230,7 @@ def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), 
         scalar = lambda t: sum((a + b * t) * s for (a, b), s in zip(lines, corners))
         points = [mesh.points[v] for v in mesh.tets[n]]
         gradient = gradient_of(points, corners) if mesh.association == "point" else [0.0, 0.0, 0.0]
-        lit = (1.0, 0.0)
-        if shade and any(gradient):
-            cosine = cosine_of(gradient, camera.forward if camera.angle is None else direction)
-            toward = [-x for x in camera.forward]  # the light is at the camera, in the view direction
-            normal = unit(gradient)
-            half = plus(toward, (-1, direction))
-            n_h = abs(dot(normal, unit(half)))
-            lit = (AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS)
+        lit = lit_by(gradient, camera, direction) if shade and any(gradient) else (1.0, 0.0)
 
         def add_boundary(cut_by, face):
             """Where the ray enters or leaves the kept part of the tet: a plane's cut, or a face that no other tet has."""
@@ -310,10 +316,7 @@ def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, li
     """RGB, like mesh_pixel(). The matter of an interval in a voxel is lit by the gradient in its middle, between surfaces."""
     origin, direction = camera.ray(pixel)
     light = light or Light()
-    near, far = 0.0, math.inf
-    for point, normal in planes:
-        rise, place = dot(normal, direction), -dot(normal, plus(origin, (-1, point))) / dot(normal, direction)
-        near, far = (max(near, place), far) if rise > 0 else (near, min(far, place))
+    near, far, _, _ = clipped(planes, origin, direction)
     for front, back, voxel in grid.stretches(origin, direction, near, far):
         at = lambda u: plus(origin, (front + (back - front) * u, direction))
         value = lambda u: grid.field(voxel, at(u))[0]
@@ -326,12 +329,8 @@ def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, li
                     crossings.append((u, color, opacity, cosine_of(grid.field(voxel, at(u))[1], direction)))
         begin = 0.0
         for u, *surface in [*sorted(crossings), (1.0, None)]:
-            lit = (1.0, 0.0)
             gradient = grid.field(voxel, at((begin + u) / 2))[1]
-            if shade and any(gradient):
-                toward, normal = [-x for x in camera.forward], unit(gradient)
-                n_h = abs(dot(normal, unit(plus(toward, (-1, direction)))))
-                lit = (AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS)
+            lit = lit_by(gradient, camera, direction) if shade and any(gradient) else (1.0, 0.0)
             bend = max(abs(value(begin + (u - begin) * x) - value(begin) - (value(u) - value(begin)) * x) for x in (0.25, 0.5, 0.75))
             lines = min(400, 1 + math.ceil(math.sqrt(bend / 1e-6)))
             for n in range(lines):

@@ -4,7 +4,7 @@ view angles of 5 to 175 degrees from 0.01 to 10 away, face on, tilted, and along
 import math
 
 from . import files
-from .plateau_meshes import direction
+from .perspective_ties import direction
 
 
 def lengthwise(r, folder):

@@ -4,8 +4,8 @@ point and cell data, any view, some on two or three ranks. Some pixels are compa
 of the program's reference.
 """
 from promise_cases import _oracle, files
-from promise_cases.plateau_meshes import direction, mesh
-from promise_cases.perspective_ties import dot, plus
+from promise_cases.perspective_ties import direction, dot, plus
+from promise_cases.plateau_meshes import mesh
 
 NAMES = {"red": (1.0, 0.0, 0.0), "blue": (0.0, 0.0, 1.0), "yellow": (1.0, 1.0, 0.0)}
 

@@ -5,16 +5,9 @@ last places apart, in the middle of the range or at its ends; any view."""
 import math
 
 from . import files
+from .perspective_ties import direction
 
 ULPS = [0, 1, 1, 2, 3, 16, 64, 256, 1000, 10_000, 1_000_000]
-
-
-def direction(r):
-    while True:
-        v = [r.uniform(-1, 1) for _ in range(3)]
-        length = math.sqrt(sum(x * x for x in v))
-        if 0.1 < length < 1:
-            return [x / length for x in v]
 
 
 def camera(r, size, near=2.2, far=5.0):

@@ -15,43 +15,27 @@ LEVELS = {"UInt8": 255, "UInt16": 65535, "Int16": 30000}
 
 
 def shape(r):
-    """(words, f): a field over [0, 1]^3 with values of about [0, 1]."""
-    kind = r.choice(["waves", "waves", "ball", "noise", "rough", "checker", "sheet", "thread", "ramp"])
-    a, b, c = (r.uniform(0.5, 4) for _ in range(3))
-    p, q = r.uniform(0, 6), r.uniform(0, 6)
-    at = [r.uniform(0.2, 0.8) for _ in range(3)]
-    normal = [r.gauss(0, 1) for _ in range(3)]
-    long = math.sqrt(sum(n * n for n in normal))
-    normal = [n / long for n in normal]
-    across = lambda x: sum(n * (v - o) for n, v, o in zip(normal, x, at))
-    waves = lambda x: 0.5 + 0.25 * (math.sin(a * 3 * x[0] + p) * math.cos(b * 3 * x[1] + q) + math.sin(c * 3 * x[2] + a * x[0]))
-    if kind == "waves":
-        return kind, waves
-    if kind == "ball":
-        return kind, lambda x: math.dist(x, at)
+    """(words, f): a field over [0, 1]^3."""
+    kind = r.choice(["smooth", "smooth", "smooth", "smooth", "noise", "rough", "checker", "thread"])
+    name, smooth = _volumes.smooth(r)
+    if kind == "smooth":
+        return name, smooth
     if kind == "noise":
         return kind, lambda x: r.random()
     if kind == "rough":
         share = 10 ** r.uniform(-4, -0.7)
-        return kind, lambda x: waves(x) + share * (r.random() - 0.5)
+        return f"rough {name}", lambda x: smooth(x) + share * (r.random() - 0.5)
     if kind == "checker":
         low, high, spread = r.uniform(0, 0.3), r.uniform(0.7, 1), 10 ** r.uniform(-3, -1)
         parity = r.choice([17, 5, 2])
         return kind, lambda x: (high if sum(int(parity * v + 0.01) for v in x) % 2 else low) + spread * r.random()
-    if kind == "sheet":
-        width = r.uniform(0.02, 0.2)
-        return kind, lambda x: math.exp(-(across(x) / width) ** 2) + 1e-3 * waves(x)
-    if kind == "thread":
-        width = r.uniform(0.03, 0.2)
-        return kind, lambda x: math.exp(-((x[0] - at[0]) ** 2 + (x[1] - at[1] - 0.2 * math.sin(6 * x[2])) ** 2) / width ** 2) + 1e-3 * waves(x)
-    return kind, across
+    width, y, z = r.uniform(0.03, 0.2), r.uniform(0.2, 0.8), r.uniform(0.2, 0.8)
+    return kind, lambda x: math.exp(-((x[0] - y) ** 2 + (x[1] - z - 0.2 * math.sin(6 * x[2])) ** 2) / width ** 2) + 1e-3 * smooth(x)
 
 
 def colors(r):
-    if r.random() < 0.3:
-        one = [r.random() for _ in range(3)]
-        return lambda: one
-    return lambda: [r.random() for _ in range(3)]
+    one = _volumes.color(r)
+    return (lambda: one) if r.random() < 0.3 else lambda: _volumes.color(r)
 
 
 def function(r, low, high, size):
@@ -108,14 +92,9 @@ def function(r, low, high, size):
 def case(r, folder, tessera):
     kind = r.choice(KINDS)
     association = r.choice(["point", "point", "point", "cell"])
-    most = r.choice([6, 10, 16, 24])
-    counts = [r.randint(3, most) for _ in range(3)]
-    if r.random() < 0.15:
-        counts[r.randrange(3)] = r.randint(40, 100)
-    cells = [n - 1 for n in counts] if association == "cell" else counts
+    counts = [max(3, n) for n in _volumes.counts(r, association)]
     name, f = shape(r)
-    values = [f([(i + 0.5) / cells[0], (j + 0.5) / cells[1], (k + 0.5) / cells[2]])
-              for k in range(cells[2]) for j in range(cells[1]) for i in range(cells[0])]
+    values = list(map(f, _volumes.sites(counts, association)[1]))
     low, high = min(values), max(values)
     if high - low < 1e-6:
         values[0], high = low + 1, low + 1
