@@ -58,54 +58,46 @@ std::vector<Segment> segments_of(int knots, double share, bool smooth) {
   return list;
 }
 
-void report(benchmark::State& state) {
-  const auto segments = static_cast<double>(state.iterations()) * batch_size;
-  state.counters["ns_a_segment"] =
-      benchmark::Counter(segments * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
 void choose(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-void run_float(benchmark::State& state, std::int64_t target, int knots, double share, bool smooth) {
-  choose(target);
-  const integrals::LaneTable table(function_of(knots), 0, 1, 1, scene::Emission::absorption);
-  integrals::FloatBatch batch;
+/// Times `integrate(batch)` of the segments.
+template <class Batch, class Integrate>
+void run(benchmark::State& state, const std::vector<Segment>& segments, const Integrate& integrate) {
+  Batch batch;
   batch.reserve(batch_size);
-  for (const Segment& s : segments_of(knots, share, smooth)) {
+  for (const Segment& s : segments) {
     batch.length[batch.size] = s.length;
     batch.scalar_front[batch.size] = s.front;
     batch.scalar_back[batch.size] = s.back;
     ++batch.size;
   }
-  state.SetLabel(integrals::lane_table_form(table));
   for (auto _ : state) {
-    integrals::integrate_lanes(table, batch);
+    integrate(batch);
     benchmark::ClobberMemory();
   }
-  report(state);
+  const auto count = static_cast<double>(state.iterations()) * batch_size;
+  state.counters["ns_a_segment"] =
+      benchmark::Counter(count * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  choose(0);
+}
+
+void run_float(benchmark::State& state, std::int64_t target, int knots, double share, bool smooth) {
+  choose(target);
+  const integrals::LaneTable table(function_of(knots), 0, 1, 1, scene::Emission::absorption);
+  state.SetLabel(integrals::lane_table_form(table));
+  run<integrals::FloatBatch>(state, segments_of(knots, share, smooth),
+                             [&](auto& batch) { integrals::integrate_lanes(table, batch); });
 }
 
 void run_double(benchmark::State& state, std::int64_t target, int knots, double share, bool smooth) {
   choose(target);
   const integrals::PiecewiseTable table(function_of(knots));
-  integrals::SegmentBatch batch;
-  batch.reserve(batch_size);
-  for (const Segment& s : segments_of(knots, share, smooth)) {
-    batch.length[batch.size] = s.length;
-    batch.scalar_front[batch.size] = s.front;
-    batch.scalar_back[batch.size] = s.back;
-    ++batch.size;
-  }
-  for (auto _ : state) {
+  run<integrals::SegmentBatch>(state, segments_of(knots, share, smooth), [&](auto& batch) {
     integrals::integrate_exact(table, scene::Emission::absorption, batch);
-    benchmark::ClobberMemory();
-  }
-  report(state);
+  });
 }
 
 }  // namespace
