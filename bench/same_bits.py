@@ -27,8 +27,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "stability"))
-import auto_random  # random views and transfer functions
-from promise_cases import files
+from promise_cases import any_scenes, files
 from results import MPI, knots_of, written
 
 MESHES = [("cube", "n=10"), ("cube", "n=9", "cell_data=1"), ("regular", "nx=12", "ny=8", "nz=10"), ("graded", "n=12", "volume_ratio=1e8"),
@@ -69,8 +68,8 @@ class Comparison:
 
     def random_view(self, r):
         """Words of `tessera render` for a random function and camera."""
-        return ["--transfer-function", self.function(auto_random.transfer_function(r, 0.0, 1.0)), "--camera",
-                written(self.folder / "camera.txt", auto_random.camera(r, r.choice([48, 96, 160])))]
+        return ["--transfer-function", self.function(any_scenes.transfer_function(r, 0.0, 1.0)), "--camera",
+                written(self.folder / "camera.txt", any_scenes.camera(r, r.choice([48, 96, 160])))]
 
     def draw(self, program, name, words, ranks):
         pictures = [self.folder / f"{name}.exr", self.folder / f"{name}.pfm"]

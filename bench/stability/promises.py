@@ -5,7 +5,7 @@
     bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]
         [--method WORDS]... [--keep FOLDER] [--json FILE]
 
-A class is a module of promise_cases/: scenes with a common property that once broke a promise. Case i of a seed is
+A class is a module of promise_cases/: scenes with a common property that once broke a promise, or any_scenes. Case i of a seed is
 always the same. Each is rendered with `--integrator exact`, `--accuracy 1e-4` and `--accuracy 1e-5` (or the class's own
 methods, or `--method`), and every pixel is judged against the double-precision reference. A case is broken if a pixel that
 is not excused (docs/ACCURACY.md) has a larger error than promised, or if there is no image within five minutes. Excused pixels are
