@@ -26,7 +26,6 @@
 #include "exchange/loopback_transport.hpp"
 #include "frame/grid/sort_first.hpp"
 #include "scene/error.hpp"
-#include "volume/bricks/brick_layout.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 #include "volume/render.hpp"
 
@@ -122,14 +121,12 @@ scene::Camera camera_at(const Run& run, int frame) {
 }
 
 struct Shown {
-  std::uint64_t bricks = 0, visible = 0, visible_voxels = 0, visible_bytes = 0;
+  std::uint64_t visible = 0, visible_voxels = 0, visible_bytes = 0;
 };
 
 Shown shown_of(const scene::SampleSource& source, const volume::RenderSettings& settings,
                const std::shared_ptr<const volume::CellRanges>& ranges, const scene::TransferFunction& function) {
-  const volume::BrickLayout layout(source.geometry(), settings.grid.brick_size, settings.grid.edge_bricks);
   Shown shown;
-  shown.bricks = layout.count();
   for (const auto& [low, high] : volume::Renderer(source, settings, ranges).visible_bricks(function)) {
     const glm::dvec3 sides = high - low;
     ++shown.visible;
@@ -170,8 +167,8 @@ void report(const Run& run, const Scanned& of) {
       frames += fmt::format("{}{{\"ms\": {:.3f}, \"units\": [{}]}}", n == 0 ? "" : ", ", frame->frame_ms, units);
     }
   });
-  fmt::print("{{\"bricks\": {}, \"visible\": {}, \"visible_voxels\": {}, \"visible_bytes\": {}, \"frames\": [{}]}}\n",
-             shown.bricks, shown.visible, shown.visible_voxels, shown.visible_bytes, frames);
+  fmt::print("{{\"visible\": {}, \"visible_voxels\": {}, \"frames\": [{}]}}\n", shown.visible, shown.visible_voxels,
+             frames);
 }
 
 void report_all(const std::vector<std::string>& arguments) {

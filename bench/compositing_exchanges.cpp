@@ -61,8 +61,8 @@ using namespace tessera;
 using exchange::Transport;
 
 struct Run {
-  std::map<std::string, std::string> words{{"volume", ""}, {"mesh", ""},    {"ranks", "2,4,8"}, {"extinction", "1"},
-                                           {"n", "128"},   {"jitter", "0"}, {"size", "1024"},   {"views", "3"}};
+  std::map<std::string, std::string> words{{"volume", ""},  {"mesh", ""},     {"ranks", "2,4,8"}, {"n", "128"},
+                                           {"jitter", "0"}, {"size", "1024"}, {"views", "3"}};
 
   explicit Run(std::span<char*> arguments) {
     for (const std::string argument : arguments) {
@@ -280,7 +280,7 @@ scene::Camera camera_at(const Run& run, int view, const scene::Box& box) {
   return camera;
 }
 
-void print(const Run& run, int ranks, const char* exchange, std::span<const Cost> views, const std::string& more = "") {
+void print(int ranks, const char* exchange, std::span<const Cost> views, const std::string& more = "") {
   Cost sum;
   for (const Cost& cost : views) {
     sum.bytes += cost.bytes, sum.messages += cost.messages, sum.most_bytes += cost.most_bytes;
@@ -288,32 +288,29 @@ void print(const Run& run, int ranks, const char* exchange, std::span<const Cost
   }
   const double each = 1.0 / static_cast<double>(views.size());
   fmt::print(
-      "{{\"ranks\": {}, \"size\": {}, \"exchange\": \"{}\", \"bytes\": {:.0f}, \"most_bytes\": {:.0f}, \"messages\": "
-      "{:.0f}, "
+      "{{\"ranks\": {}, \"exchange\": \"{}\", \"bytes\": {:.0f}, \"most_bytes\": {:.0f}, \"messages\": {:.0f}, "
       "\"cpu_ms\": {:.3f}, \"error\": {:.2e}{}}}\n",
-      ranks, run.whole("size"), exchange, each * static_cast<double>(sum.bytes),
-      each * static_cast<double>(sum.most_bytes), each * static_cast<double>(sum.messages),
-      1e3 * each * sum.cpu_seconds, sum.error, more);
+      ranks, exchange, each * static_cast<double>(sum.bytes), each * static_cast<double>(sum.most_bytes),
+      each * static_cast<double>(sum.messages), 1e3 * each * sum.cpu_seconds, sum.error, more);
 }
 
-void print_composited(const Run& run, int ranks, std::span<const Parts> views) {
+void print_composited(int ranks, std::span<const Parts> views) {
   std::vector<Cost> direct, binary, radix;
   for (const Parts& parts : views) {
     direct.push_back(direct_send(parts));
     binary.push_back(swaps(parts, 2));
     radix.push_back(swaps(parts, 4));
   }
-  print(run, ranks, "direct-send", direct);
-  print(run, ranks, "binary-swap", binary);
-  print(run, ranks, "radix-k", radix);
+  print(ranks, "direct-send", direct);
+  print(ranks, "binary-swap", binary);
+  print(ranks, "radix-k", radix);
 }
 
 void of_volume(const Run& run) {
   const auto source = datasets::generate_volume(run.words.at("volume"), {{"n", run.number("n")}, {"bits", 8}});
   const auto ranges = std::make_shared<const volume::CellRanges>(*source, 2);
-  const double k = run.number("extinction");
   const scene::TransferFunction function(
-      {{0, {0.1, 0.2, 0.8}, 0.1 * k}, {128, {0.9, 0.8, 0.3}, 0.4 * k}, {255, {1, 0.3, 0.1}, k}});
+      {{0, {0.1, 0.2, 0.8}, 0.1}, {128, {0.9, 0.8, 0.3}, 0.4}, {255, {1, 0.3, 0.1}, 1}});
   const scene::ImageSize size{run.whole("size"), run.whole("size")};
   for (const int ranks : run.ranks()) {
     volume::RenderSettings settings;
@@ -333,7 +330,7 @@ void of_volume(const Run& run) {
             renderer.render(camera, size, function, {.regions = {parts.own.back()}, .part = box}).image);
       }
     }
-    print_composited(run, ranks, views);
+    print_composited(ranks, views);
   }
 }
 
@@ -434,7 +431,7 @@ void of_mesh(const Run& run) {
       file == "cube" ? datasets::cube(run.whole("n"), run.number("jitter")) : io::read_mesh(io::identify(file)).mesh;
   const scene::MeshFacts facts = scene::facts_of(mesh);
   const auto [low, high] = facts.scalar_range;
-  const double k = run.number("extinction") / glm::length(facts.box.high - facts.box.low);
+  const double k = 1 / glm::length(facts.box.high - facts.box.low);
   const scene::TransferFunction function(
       {{low, {0.1, 0.2, 0.8}, 0.1 * k}, {0.5 * (low + high), {0.9, 0.8, 0.3}, 0.4 * k}, {high, {1, 0.3, 0.1}, k}});
   const scene::ImageSize size{run.whole("size"), run.whole("size")};
@@ -454,11 +451,9 @@ void of_mesh(const Run& run) {
     for (std::size_t v = 0; v < jobs.size(); ++v)
       views.push_back(pictures_of(parts, settings, function, jobs[v].camera, size, whole[v], covered));
     const std::vector<Cost> sent = runs(parts, facts, settings, function, jobs, views, fragments);
-    print(run, ranks, "runs", sent,
-          fmt::format(", \"fragments\": {:.0f}, \"runs_a_part\": {:.3f}",
-                      static_cast<double>(fragments) / static_cast<double>(jobs.size()),
-                      static_cast<double>(fragments) / static_cast<double>(covered)));
-    print_composited(run, ranks, views);
+    print(ranks, "runs", sent,
+          fmt::format(", \"runs_a_part\": {:.3f}", static_cast<double>(fragments) / static_cast<double>(covered)));
+    print_composited(ranks, views);
   }
 }
 

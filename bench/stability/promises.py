@@ -3,7 +3,7 @@
 """Random cases of one class against the promises of `exact` and `auto`, with every pixel judged.
 
     bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]
-        [--method WORDS]... [--keep FOLDER] [--json FILE]
+        [--method WORDS]... [--keep FOLDER]
 
 A class is a module of promise_cases/: scenes with a common property that once broke a promise, or any_scenes. Case i of a seed is
 always the same. Each is rendered with `--integrator exact`, `--accuracy 1e-4` and `--accuracy 1e-5` (or the class's own
@@ -142,7 +142,6 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--method", action="append", default=[], help="words of `tessera render`, e.g. '--accuracy 1e-3'")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the last case's files")
-    parser.add_argument("--json", type=pathlib.Path, help="what each class came to")
     args = parser.parse_args()
     names = args.classes or class_names()
     unknown = sorted(set(names) - set(class_names()))
@@ -152,8 +151,6 @@ def main():
         folder = args.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         results = [run_class(name, args, folder) for name in names]
-    if args.json:
-        args.json.write_text(json.dumps(results, indent=1) + "\n")
     sys.exit(1 if any(t["broken"] or t["too_many_excused"] for t in results) else 0)
 
 
