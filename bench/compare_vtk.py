@@ -19,17 +19,9 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import vtk_raycast
-from results import ROOT, Section, error, options, render, run, written
+from results import ROOT, Section, data_words, error, options, render, run, written
 
-FILES = {
-    "oxygen-post": ("oxygen-post/postxyz.bin", "oxygen-post/postq.bin"),
-    "bluntfin": ("bluntfin/bluntfinxyz.bin", "bluntfin/bluntfinq.bin"),
-    "bracket": ("bracket/bracket_appended_compressed.vtu", None),
-    "bracket-perspective": ("bracket/bracket_appended_compressed.vtu", None),
-    "disk-out": ("disk-out/disk_out_ref.ex2", None),
-    "notch": ("notch/notch_stress_fixed.vtk", None),
-    "unisim": ("unisim/UNISIM-II-D.vtu", None),
-}
+MESHES = ("oxygen-post", "bluntfin", "bracket", "bracket-perspective", "disk-out", "notch", "unisim")
 # Along the field's range: value, linear colour, extinction times the default image's unit distance. Two humps and a
 # bright end, so that every part of the range is visible and the order of cells matters.
 SHAPE = [(0.0, 0.05, 0.10, 0.50, 0.02), (0.2, 0.05, 0.45, 0.60, 0.06), (0.45, 0.20, 0.80, 0.20, 0.30),
@@ -149,8 +141,7 @@ def difference(ours, theirs):
 
 def compare(args, name):
     """A row of the table."""
-    file, q = FILES[name]
-    mesh, extra = args.data / file, ["--q", args.data / q] if q else []
+    mesh, *extra = data_words(args, name.removesuffix("-perspective"))
     perspective = ["--projection", "perspective"] if name.endswith("perspective") else []
     report = render(args, mesh, *extra, *perspective, "--size", "512x384")
     field, on_cells, tets = report["mesh"]["field"]["name"], report["mesh"]["field"]["association"] == "cell", report["mesh"]["tets"]
@@ -164,7 +155,7 @@ def compare(args, name):
     run(args.tessera, "convert", mesh, args.work / "tets.vtu", *extra, "--quiet")
     same = vtk_raycast.read_mesh(str(args.work / "tets.vtu"))
     choose_field(same, field, on_cells)
-    own = own_tets(mesh, args.data / q if q else None, field, on_cells)
+    own = own_tets(mesh, extra[-1] if extra else None, field, on_cells)
     (same_errors, same_pixels), (own_errors, _) = (
         difference(ours, in_child(lambda: vtk_raycast.render(grid, vtk_raycast.camera_of(view), knots, "partial", 0, os.cpu_count(), on_cells)[0],
                                   args.work / "vtk.npy")) for grid in (same, own))
@@ -175,7 +166,7 @@ def compare(args, name):
 
 
 def main():
-    args = options(__doc__, data=pathlib.Path, only=",".join(FILES))
+    args = options(__doc__, data=pathlib.Path, only=",".join(MESHES))
     section = Section(args)
     section.text(f"Pictures of 512x384, linear RGB, VTK {vtk.VTK_VERSION}.")
     section.table("lrrrrrrrl", "mesh, field", "Tessera against the reference", "VTK, same tets: max", "RMS", "over 0.02 [%]", "lit by one alone",

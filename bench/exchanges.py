@@ -12,12 +12,11 @@ time, plus its sent bytes at 95 MB/s (the thesis's bandwidth); waiting for other
 import json
 import pathlib
 
-from results import PROGRAMS, error, measure_parts, options, run
+from results import PROGRAMS, data_words, error, measure_parts, options, run
 
 EXCHANGES = {"direct-send": "direct send", "binary-swap": "binary swap", "radix-k": "radix-k"}
 BANDWIDTH = 95e6  # bytes a second: the thesis's
 MESHES = {"cube": ("mesh=cube", "n=24", "jitter=0"), "cube, vertices moved": ("mesh=cube", "n=24", "jitter=0.2")}
-FILES = {"notch": "notch/notch_stress_fixed.vtk", "disk-out": "disk-out/disk_out_ref.ex2"}
 SAMPLES, SIZE, VIEWS, RANKS = 160, 1024, 8, 8
 
 
@@ -44,8 +43,8 @@ def volumes(args, section):
 def meshes(args, section):
     section.table("l" + "r" * 6, "mesh", "runs a pixel", "runs: MB", "direct send: MB", "radix-k: MB", "error of runs", "of direct send")
     files = {}
-    for name, path in (FILES if args.data else {}).items():
-        run(args.tessera, "convert", args.data / path, args.work / f"{name}.tets", "--quiet")
+    for name in ("notch", "disk-out") if args.data else ():
+        run(args.tessera, "convert", *data_words(args, name), args.work / f"{name}.tets", "--quiet")
         files[f"`{name}`"] = (f"mesh={args.work / name}.tets",)
     for name, words in {**MESHES, **files}.items():
         of = exchanged(args, *words, f"size={SIZE // 2}", f"views={VIEWS // 2}", f"ranks={RANKS}")[RANKS]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """First images: the result of `tessera render FILE -o OUT` without other options, in numbers; the images stay in --work.
 
-Data sets: those of --data (in the layout of its README: one file each, named in DATA below), and 40 generated ones: meshes and volumes of `tessera generate`, and
+Data sets: the ten of --data (of two files the first), and 40 generated ones: meshes and volumes of `tessera generate`, and
 volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and heavy-tailed fields, noise). Images are 1024 x 1024, the program's
 default size. For each image, before it is composited over a background:
 
@@ -22,11 +22,7 @@ import struct
 import numpy as np
 from PIL import Image
 
-from results import Section, generated, options, run
-
-DATA = ("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin", "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
-        "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu", "volumes/heptane.nii.gz", "volumes/LIDC2.vti",
-        "volumes/engine.nii.gz", "volumes/carotid.vtk")
+from results import DATA, Section, generated, options, run
 
 GENERATED = (
     ("demo.vtu", "demo"), ("cube.vtu", "cube n=16"), ("cube_cells.vtu", "cube n=12 cell_data=6"), ("regular.vtu", "regular"),
@@ -124,7 +120,7 @@ def measured(picture):
 
 def main():
     args = options(__doc__, data=pathlib.Path)
-    files = [args.data / name for name in DATA] if args.data else []
+    files = [args.data / file for file, *_ in DATA.values()] if args.data else []
     files += [generated(args, name, *words.split()) for name, words in GENERATED] + [args.work / name for name in written(args.work)]
     section, outside = Section(args), []
     for file in files:

@@ -8,14 +8,8 @@ the counters (ray segments of meshes, pieces integrated of volumes). Times are t
 bricks in memory, and of runs compared with raw segments (`--without merging`), two ranks. --only takes some of the data sets.
 """
 import pathlib
-import sys
 
-from results import Section, options, render, written
-
-SETS = {"oxygen-post": ["oxygen-post/postxyz.bin", "--q", "oxygen-post/postq.bin"], "bluntfin": ["bluntfin/bluntfinxyz.bin", "--q", "bluntfin/bluntfinq.bin"],
-        "bracket": ["bracket/bracket_appended_compressed.vtu"], "disk-out": ["disk-out/disk_out_ref.ex2"], "notch": ["notch/notch_stress_fixed.vtk"],
-        "unisim": ["unisim/UNISIM-II-D.vtu"], "heptane": ["volumes/heptane.nii.gz"], "LIDC2": ["volumes/LIDC2.vti"], "engine": ["volumes/engine.nii.gz"],
-        "carotid": ["volumes/carotid.vtk"]}
+from results import DATA, Section, data_words, options, render, written
 
 
 def sparse(low, high, unit):
@@ -59,14 +53,12 @@ def cells(args, words):
 
 
 def main():
-    args = options(__doc__, data=pathlib.Path, only=",".join(SETS))
-    if args.data is None:
-        sys.exit("needed.py: name the data sets' folder with --data")
+    args = options(__doc__, data=pathlib.Path, only=",".join(DATA))
     section = Section(args)
     section.table("l" * 9, "data set", "of", "left out by culling: default / sparse", "culling: default; sparse", "skipping: default; sparse", "termination: opaque",
                   "lattice: default", "bricks held, MB: sparse", "merging, MB sent")
     for name in args.only.split(","):
-        section.row(name, *cells(args, [args.data / word if word[0] != "-" else word for word in SETS[name]]))
+        section.row(name, *cells(args, data_words(args, name)))
     section.keep()
 
 

@@ -32,6 +32,10 @@ EXACT = ["--integrator", "exact"]
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 PROGRAMS = ROOT / "build/release/bench"  # of -DTESSERA_BENCH=ON
 PYTHON_OF_VTK = ["xvfb-run", "-a", "/usr/bin/python3"]
+DATA = {"oxygen-post": ("oxygen-post/postxyz.bin", "oxygen-post/postq.bin"), "bluntfin": ("bluntfin/bluntfinxyz.bin", "bluntfin/bluntfinq.bin"),
+        "bracket": ("bracket/bracket_appended_compressed.vtu",), "disk-out": ("disk-out/disk_out_ref.ex2",), "notch": ("notch/notch_stress_fixed.vtk",),
+        "unisim": ("unisim/UNISIM-II-D.vtu",), "heptane": ("volumes/heptane.nii.gz",), "LIDC2": ("volumes/LIDC2.vti",), "engine": ("volumes/engine.nii.gz",),
+        "carotid": ("volumes/carotid.vtk",)}  # in the directory of --data: PLOT3D's coordinates and values, or one file
 
 
 # ---- Running programs ------------------------------------------------------------------------------------------------
@@ -93,6 +97,14 @@ def written(path, content):
     """A path, after writing text or JSON to it."""
     path.write_text(content if isinstance(content, str) else json.dumps(content))
     return path
+
+
+def data_words(args, name):
+    """Words of a command that reads a data set of DATA."""
+    if args.data is None:
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: name the directory of the data sets with --data")
+    file, *values = (args.data / file for file in DATA[name])
+    return [file, *(["--q", *values] if values else [])]
 
 
 def knots_of(path):

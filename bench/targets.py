@@ -10,7 +10,7 @@ minute. --only takes some of cube, large, real and modes.
 import pathlib
 import statistics
 
-from results import EXACT, VIEW, Section, generated, knots_of, options, render, run, written
+from results import EXACT, VIEW, Section, data_words, generated, knots_of, options, render, run, written
 
 BOX = """ply
 format ascii 1.0
@@ -99,8 +99,8 @@ def large(b):
 
 
 def real(b):
-    for name, file, q in (("oxygen-post", "postxyz.bin", ["--q", "postq.bin"]), ("bracket", "bracket_appended_compressed.vtu", [])) if b.args.data else ():
-        mesh = b.converted(f"{name}.tets", b.args.data / name / file, "--subdivide", "1", *q[:1], *(b.args.data / name / file for file in q[1:]))
+    for name in ("oxygen-post", "bracket") if b.args.data else ():
+        mesh = b.converted(f"{name}.tets", *data_words(b.args, name), "--subdivide", "1")
         report = render(b.args, mesh, "--size", "1024x1024", *EXACT, "--threads", "2", "--repeat", b.args.repeat, *VERIFY)["frames"][0]
         times, segments = sorted(report["frame_ms"]), report["counters"]["segments"]
         b.section.row(f"{name}, cut into {report['counters']['tets_total']:,} tets, default view", ">= 300 Mseg/s",

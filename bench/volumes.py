@@ -11,7 +11,7 @@ import json
 import pathlib
 import statistics
 
-from results import HERE, PYTHON_OF_VTK, VIEW, Section, error, generated, knots_of, options, render, run, written
+from results import HERE, PYTHON_OF_VTK, VIEW, Section, data_words, error, generated, knots_of, options, render, run, written
 
 METHODS = [("--accuracy", "1e-3"), ("--accuracy", "1e-4"), ("--accuracy", "1e-5"), ("--integrator", "exact")]
 
@@ -21,14 +21,14 @@ def volumes(args):
     bytes_function = "".join(" ".join(map(repr, [255 * value, *rest])) + "\n" for value, *rest in knots_of(VIEW[3]))
     yield "ripples 256^3 float", generated(args, "ripples.nrrd", "ripples", "n=256"), VIEW
     yield "ripples 256^3 8-bit", generated(args, "bytes.nrrd", "ripples", "n=256", "bits=8"), [*VIEW[:3], written(args.work / "bytes.txt", bytes_function)]
-    for name in ("heptane.nii.gz", "LIDC2.vti") if args.data else ():
-        path = args.data / "volumes" / name
+    for name in ("heptane", "LIDC2") if args.data else ():
+        path, = data_words(args, name)
         volume = render(args, path, "--size", "64x64")["volume"]
         low, high = volume["field"]["range"]
         extent = max(b - a for a, b in zip(*volume["bounds"]))
         at = lambda u: low + u * (high - low)
         function = f"{at(0.5)} 1 0.6 0.2 0\n{at(0.7)} 1 1 1 {40 / extent}\n{at(1)} 1 1 1 {80 / extent}\n"
-        yield f"{name.split('.')[0]}, sparse", path, ["--transfer-function", written(args.work / f"{name}.txt", function), "--size", "1024x1024"]
+        yield f"{name}, sparse", path, ["--transfer-function", written(args.work / f"{name}.txt", function), "--size", "1024x1024"]
 
 
 def main():
