@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random cases of one class against the promises of `exact` and `auto`, with every pixel judged.
 
-    bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]
-        [--method WORDS]... [--keep FOLDER]
+    bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0] [--keep FOLDER]
 
 A class is a module of promise_cases/: scenes with a common property that once broke a promise, or any_scenes. Case i of a seed is
 always the same. Each is rendered with `--integrator exact`, `--accuracy 1e-4` and `--accuracy 1e-5` (or the class's own
-methods, or `--method`), and every pixel is judged against the double-precision reference. A case is broken if a pixel that
+methods), and every pixel is judged against the double-precision reference. A case is broken if a pixel that
 is not excused (docs/ACCURACY.md) has a larger error than promised, or if there is no image within five minutes. Excused pixels are
 counted over all cases of a class and must stay below 1e-4 of all pixels, unless the class justifies more (EXCUSABLE, a fraction).
 Prints each case that breaks (`--first i --cases 1 --keep FOLDER` reproduces it and keeps its files) and a line for each
@@ -112,7 +111,7 @@ def run_class(name, args, folder):
         r = random.Random(f"{name}/{args.seed}/{number}")
         made = module.case(r, folder, str(args.tessera))
         case = Case(args.tessera, made, folder, args.threads)
-        methods = [m.split() for m in args.method] or made.get("methods", METHODS)
+        methods = made.get("methods", METHODS)
         if check is not None:
             right, words = check(case, methods, tally)
             broken = [] if right else [words]
@@ -140,7 +139,6 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--method", action="append", default=[], help="words of `tessera render`, e.g. '--accuracy 1e-3'")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the last case's files")
     args = parser.parse_args()
     names = args.classes or class_names()
