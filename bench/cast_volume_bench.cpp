@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ray caster of regular grids: time of a 1024x1024 image of 256^3 samples in memory, and CPU nanoseconds per
-// visited voxel, over all threads; for each method, requested accuracy and sample type, shaded or not, and with an
+// visited voxel, over two threads; for each method, requested accuracy and sample type, shaded or not, and with an
 // opaque and a sparse transfer function, which show the effect of early termination and empty space skipping.
 //
-//   cast_volume_bench [--benchmark_filter=auto]      TESSERA_BENCH_VOLUME=n for n^3 samples, TESSERA_BENCH_THREADS=t
+//   cast_volume_bench [--benchmark_filter=auto]
 //
 // View and transfer function are those of all performance figures (bench/camera.txt, bench/transfer_function.txt).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <vector>
@@ -22,14 +21,8 @@ namespace {
 
 using namespace tessera;
 
-int number(const char* name, int otherwise) {
-  const char* const text = std::getenv(name);
-  return text != nullptr ? std::atoi(text) : otherwise;
-}
-
 std::unique_ptr<scene::SampleSource> ripples(int bits) {
-  const int n = number("TESSERA_BENCH_VOLUME", 256);
-  const auto made = datasets::generate_volume("ripples", {{"n", n}, {"bits", bits}});
+  const auto made = datasets::generate_volume("ripples", {{"n", 256}, {"bits", bits}});
   const auto count = static_cast<std::size_t>(made->geometry().all_samples().count());
   const auto kept = [&](auto kind) -> std::unique_ptr<scene::SampleSource> {
     std::vector<decltype(kind)> samples(count);
@@ -55,7 +48,7 @@ void cast(benchmark::State& state, volume::RenderSettings settings, int bits, co
   static std::map<int, std::unique_ptr<scene::SampleSource>> sources;
   auto& source = sources[bits];
   if (!source) source = ripples(bits);
-  settings.threads = number("TESSERA_BENCH_THREADS", 2);
+  settings.threads = 2;
   volume::Renderer renderer(*source, settings);
   scene::Camera camera;
   camera.position = {3.1, 2.3, 4.2};

@@ -3,17 +3,16 @@
 // window) and per segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction
 // set, on one thread.
 //
-//   lattice_bench --benchmark_filter=composite/.*AVX3
+//   lattice_bench --benchmark_filter=kernels/.*AVX3
 //
-// Mesh: cube 32 (TESSERA_BENCH_CUBE=n for another); view and transfer function are those of all performance figures;
-// the cell size in pixels determines the image size.
+// Mesh: cube 32; view and transfer function are those of all performance figures; the cell size in pixels determines
+// the image size.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -168,8 +167,7 @@ void kernels(benchmark::State& state, const scene::TetMesh& mesh, int pixels, st
 }  // namespace
 
 int main(int argc, char** argv) {
-  const char* side = std::getenv("TESSERA_BENCH_CUBE");
-  const scene::TetMesh mesh = datasets::cube(side != nullptr ? std::atoi(side) : 32);
+  const scene::TetMesh mesh = datasets::cube(32);
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     const char* name = hwy::TargetName(target);
