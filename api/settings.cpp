@@ -108,7 +108,7 @@ void check_grid(const Settings& settings) {
   if (kind == IntegratorKind::preintegrated && settings.ranks.distribution == Distribution::sort_last)
     throw scene::bad_input(
         "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
-        "`integrator` automatic, exact or sampled, or sort-first");
+        "`integrator` auto, exact or sampled, or sort-first");
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ void validate(const FrameSettings& frame, const Settings& settings, DataKind dat
   const bool exact = kind == IntegratorKind::exact || kind == IntegratorKind::automatic;
   if (data == DataKind::grid && !exact)
     throw scene::bad_input(fmt::format(
-        "{}: steps along rays give light other than that of their parts; set `integrator` automatic or exact", what));
+        "{}: steps along rays give light other than that of their parts; set `integrator` auto or exact", what));
   if (data == DataKind::grid && settings.grid.shading && !frame.peel)
     throw scene::bad_input("deep image: it is not shaded; leave `shade` out");
   if (data == DataKind::mesh && settings.mesh.rasterizer == Rasterizer::scanline)
