@@ -150,9 +150,6 @@ std::vector<ChartMethod> grid_methods(const ChartScene& scene) {
   list.add("no termination", "auto 0.0001, no termination", 1.5,
            {.kind = IntegratorKind::automatic, .accuracy = 1e-4, .terminates = false});
   for (const double step : {2.0, 0.5, 4.0, 0.25, 0.125}) stepped(step);
-  ChartMethod& slices = list.add("slices (GL)", "slices (GL)", 1, {});
-  slices.left_out = "the slice renderer is not built in";
-  slices.by_slices = true;
   return list.take();
 }
 

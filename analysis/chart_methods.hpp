@@ -35,7 +35,6 @@ struct ChartMethod {
   double cost = 1;       ///< its time relative to the first method's, roughly: decides whether it is tried
   std::string preset;    ///< of `render`, if a preset is the whole method
   std::string left_out;  ///< why it is not available here; empty if it is
-  bool by_slices = false;
 
   /// Whether to recommend it: not if it needs several ranks, or switches optimizations off.
   [[nodiscard]] bool recommended() const {

@@ -36,7 +36,6 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 /// The options of `tessera render` for this method.
 std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
-  if (method.by_slices) return "--renderer slice";
   if (!method.preset.empty()) return "--preset " + method.preset;
   const Settings& s = method.settings;
   if (method.ranks > 1)
