@@ -33,7 +33,7 @@ S() { tessera render m.vtu -o a.png "$@"; }
 I() { tessera info "$@"; }
 toml() { printf "$1" > s.toml; R --config s.toml; }
 knots() { printf "$1" > f.txt; shift; R --transfer-function f.txt "$@"; }
-film() { tessera render "$1" -o a%d.png --size 9x9; }
+film() { tessera render -o a%d.png --size 9x9 "$@"; }
 ranks() { ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 tessera render m.vtu -o a.png --size 16x16 "$@"; }
 at_terminal() { python3 -c 'import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))' "$@"; }
 four_axes() { printf "NRRD0004\ntype: uint8\ndimension: 4\n$1sizes: 2 2 2 2\nencoding: hex\n\n%032d" 1 > b.nrrd; }
@@ -47,6 +47,10 @@ tessera dance m.vtu => is not a command; use render => R
 tessera info => see tessera info --help => tessera info --help
 I m.vtu --zzzzzz => see tessera info --help => tessera info --help
 R --feild f => did you mean --field => R --field f
+R --color-bra=left => did you mean --color-bar? => R --color-bar=left
+tessera help inof => did you mean info? => tessera help info
+R --field ponit:f => did you mean 'point:f'? => R --field point:f
+R --transfer-function viridis:peask => did you mean viridis:peaks? => R --transfer-function viridis:peaks
 R --field g => it has point:'f' => R --field point:f
 I m.vtu --field ff => did you mean 'f'? => I m.vtu --field f
 tessera render mm.vtu -o a.png => did you mean m.vtu? => R
@@ -67,7 +71,25 @@ R --integrator fast => use exact, sampled:N, preintegrated[:N], partial or auto 
 R --color-bar=middle => is not a place; use top-left => R --color-bar=top-left
 R --outline=2 => takes no value; leave that out => R --outline
 
+# annotations
+R --annotate {tiem} => {tiem} is unknown; use {field} {time} {file} => R --annotate {time}
+R --axes=all => use triad, box or both => R --axes=both
+R --color-bar-title T => has no effect without --color-bar => R --color-bar --color-bar-title T
+R --color-bar --color-bar-range 5 => write LOW,HIGH => R --color-bar --color-bar-range 1,5
+R --color-bar --color-bar-range 5,1 => does not ascend; write the smaller number first
+    => R --color-bar --color-bar-range 1,5
+R --color-bar --color-bar-scale cubic => use linear or log => R --color-bar --color-bar-scale log
+R --color-bar --color-bar-scale log --color-bar-range=-1,5 => give --color-bar-range
+    => R --color-bar --color-bar-range=-1,5
+R --annotate a --annotation-size 2000 => it must be 4 to 1000 => R --annotate a --annotation-size 1000
+R --annotation-size 20 => has no effect without => R --annotate a --annotation-size 20
+R --axes --length-unit mm => has no effect without --axes=box or --scale-bar => R --axes=box --length-unit mm
+R --outline --annotation-layer l.pfm => name a .png or an .exr => R --outline --annotation-layer l.png
+R --outline --annotation-layer l.deep.exr => name a .png or an .exr => R --outline --annotation-layer l.exr
+tessera render m.vtu -o a.deep.exr --outline => name an .exr, .png or .pfm too => R -o a.deep.exr --outline
+
 # files of options
+R --config none.toml => there is no such file => R
 toml "veiw = 'left'\n" => did you mean view? => toml "view = 'left'\n"
 toml "qqqqqqqqqq = 1\n" => see tessera render --help-all => tessera render --help-all
 toml "iso = ['0.5'\n" => end it with ] => toml "iso = ['0.5']\n"
@@ -85,12 +107,14 @@ R --fit => name one, or leave it out => R --fit --camera c.json
 R --camera c.json --view front => leave one of the two out => R --camera c.json
 R --camera c.json --projection orthographic => leave one of the two out => R --projection orthographic
 R --camera { => not valid JSON => R --camera c.json
-R --camera far.json => is in the view; --fit shows something => R --camera far.json --fit
 R --shade --light 0,0,0 => give the direction towards the light => R --shade --light 1,1,1
 
 # parts of the data, blocks and steps
 R --threshold 1,0 => write the smaller number first => R --threshold 0,1
 R --threshold 7,8 => nothing is left to render => R --threshold 0,1
+R --threshold 1 => is not two numbers; write MIN,MAX => R --threshold 0,1
+R --clip 1,2,3 => is not PX,PY,PZ,NX,NY,NZ => R --clip 0,0,0,1,2,3
+R --clip 9,0,0,1,0,0 => nothing is on the side that --clip keeps => R --clip 0,0,0,1,0,0
 R --clip 0,0,0,0,0,0 => give the side to keep => R --clip 0,0,0,0,0,1
 R --clip box:0,0,0,0,1,1 => give two opposite corners => R --clip box:0,0,0,1,1,1
 R --threshold 0,0.5 --clip 0.4,0.4,0.4,1,1,1 => move the plane => R --threshold 0,1 --clip 0.4,0.4,0.4,1,1,1
@@ -100,8 +124,12 @@ I can.ex2 --block steal => the nearest is 'steel' => I can.ex2 --block steel
 I can.ex2 --time-step 3 => there is no time step 3 => I can.ex2 --time-step 2
 R --time-step 2 => leave it out => R
 I m.vtu --time-step 1:2 => give one step => I m.vtu
-tessera render can.ex2 -o a.png --size 9x9 --time-step 2:1 => give the smaller step first
-    => tessera render can.ex2 -o a%d.png --size 9x9 --time-step 1:2
+I can.ex2 --time-step all => which only render makes => film can.ex2 --time-step all
+film can.ex2 --time-step 0:3 => there is no time step 3, it has 3 => film can.ex2 --time-step 0:2
+film can.ex2 --time-step x:3 => is not a whole number from 0 up => film can.ex2 --time-step 0:2
+film can.ex2 --time-step 0:2:0 => is not a whole number from 1 up => film can.ex2 --time-step 0:2:1
+tessera render can.ex2 -o a.png --size 9x9 --time-step all => need a numbered name => film can.ex2 --time-step all
+film can.ex2 --time-step 2:1 => give the smaller step first => film can.ex2 --time-step 1:2
 R --warp v:x => write NAME, NAME:FACTOR or off => R --warp off
 
 # transfer functions
@@ -113,12 +141,9 @@ R --iso 7 => choose a value between => R --iso 0.5
 R --transfer-function '{"knots": [[0, 1]]}' => write [value, red, green, blue, extinction]
     => R --transfer-function '{"knots": [[0, 1, 0, 0, 1]]}'
 R --transfer-function /proc/self/mem => check that it is the right file => R --transfer-function viridis
-knots "0 1 1 1 1e-6\n1 1 1 1 1e-6\n" => no pixel is more opaque than
-    => knots "0 1 1 1 1e-6\n1 1 1 1 1e-6\n" --opacity-scale 1e6
 knots "0 1 1 1 0\n1 1 1 1 0\n" --iso 50 => ; give it opacity => knots "0 1 1 1 2\n1 1 1 1 3\n"
 knots "0 1e-9 0 0 0\n1 1e-9 0 0 0\n" --emission independent => give the transfer function brighter colours
     => knots "0 1 0 0 0\n1 1 0 0 0\n" --emission independent
-knots "5 1 1 1 0\n6 1 1 1 3\n" => stretches it over them => knots "5 1 1 1 0\n6 1 1 1 3\n" --range=-9,9
 
 # methods
 R --accuracy 1e-3 --integrator sampled:4 => leave one of the two out => R --integrator sampled:4
@@ -126,6 +151,18 @@ R --shade --emission independent => leave one of the two out => R --shade
 R --shade --rasterizer scanline => use --rasterizer planes => R --shade --rasterizer planes
 R --deep-accuracy 1e-3 => name one with -o FILE.deep.exr => R --deep-accuracy 1e-3 -o a.deep.exr
 R --peel 1 => like 0.95:4 => R --peel 0.95:4
+R --peel 0.5 --deep-accuracy 1e-2 => leave one of the two out => R --peel 0.5
+R --peel 0.5 --rasterizer scanline => use planes => R --peel 0.5 --rasterizer planes
+R --peel 0.5 --compositor gl-compute => leave out => R --peel 0.5
+V --peel 0.5 --show balance => leave one of the two out => V --peel 0.5
+V --peel 0.5 --integrator preintegrated => use auto or exact => V --peel 0.5 --integrator auto
+R --deep-accuracy 2 -o a.deep.exr => --deep-accuracy 2: it must be 1e-6 to 1 => R --deep-accuracy 1 -o a.deep.exr
+R --rasterizer scanline --projection perspective => use an orthographic view, or --rasterizer planes
+    => R --rasterizer planes --projection perspective
+R --integrator sampled:4 -o a.deep.exr => use exact or auto => R --integrator exact -o a.deep.exr
+R --compositor gl-fragment --backend osmesa --exchange runs => use --exchange segments => R --exchange segments
+R --backend osmesa,cpu => give one, or one for each => R --backend cpu
+S --memory 1M --size 1024x1024 --threads 1 => raise it => S --memory 2M --size 1024x1024 --threads 1
 R --peel 0.5 --integrator sampled:4 => use auto or exact => R --peel 0.5 --integrator exact
 S --size 64x64 --peel 0.5:64 --memory 1M => raise it, or ask for fewer layers
     => S --size 64x64 --peel 0.5:64 --memory 64M
@@ -134,7 +171,21 @@ R --rasterizer device => or use --rasterizer planes => R --rasterizer planes
 R --stall-timeout 0.01 => is not 0 or 0.2 to => R --stall-timeout 0.2
 tessera render c.vtk -o a.png --size 9x9 --field f --shade => gives values at the points
     => tessera render c.vtk -o a.png --size 9x9 --field f --shade --smooth
-R --surface walls => give boundary or a file of triangles => R --surface a.ply; R --surface boundary
+
+# surfaces
+R --surface walls => it is not made of named blocks; give boundary or a file => R --surface a.ply; R --surface boundary
+R --surface walls.ply => is neither boundary nor a file that is there => R --surface a.ply
+R --surface c.vtk => is not a surface of triangles; give a .ply, .stl, .vtp => R --surface a.ply
+R --surface boundary:reddish => is not a colour; write R,G,B => R --surface boundary:red
+R --surface boundary:red:2 => opacity 2 => R --surface boundary:red:0.5
+R --surface boundary --rasterizer scanline => use --rasterizer planes => R --surface boundary --rasterizer planes
+R --surface empty.ply => is empty; write it again => R --surface a.ply
+R --iso high => is not a number => R --iso 0.5
+R --iso 0.5:red:0 => above 0 and at most 1 => R --iso 0.5:red:1
+R --iso 0.5:red:0.5:1 => is not a number => R --iso 0.5:red:0.5
+R --iso 0.5 --rasterizer scanline => use --rasterizer planes => R --iso 0.5 --rasterizer planes
+R --iso 0.5 --backend osmesa => leave out --compositor and --backend => R --iso 0.5
+V --surface boundary => is for meshes => V --iso 0.5
 I a.ply --max-volume 1e-15 => or more => I a.ply --max-volume 0.01
 
 # volumes
@@ -186,9 +237,12 @@ printf '(2 3)\n(10 (0 1 ffffffff 0))\n' > b.cas; I b.cas => export CGNS or EnSig
 sed 's/0 0 1</1 1 0</' t.vtu > b.vtu; tessera render b.vtu -o a.png => give a mesh that has => I t.vtu
 for k in $(seq 71); do echo "INCLUDE '$((k + 1)).bdf'" > $k.bdf; done; I 1.bdf => give one file => I a.bdf
 cp t1.vtu m_0001.vtu; I m.pvtu => write all pieces with the same fields => cp m_0000.vtu m_0001.vtu; I m.pvtu
-R --surface c.vtk => give a .ply, .stl, .vtp => R --surface a.ply
 tessera timing c.json => give a file that tessera render --timing wrote => R --timing t.json; tessera timing t.json
 R --like c.json => give a file that --report has written => R --report r.json; R --like r.json
+echo '[1]' > b.json; R --like b.json => give a file that --report has written => R
+echo '{"mesh": 1}' > b.json; R --like b.json => give a file that --report has written => R
+echo '{"frames": []}' > b.json; R --like b.json => give a file that --report has written => R
+R --like none.json => there is no such file => R
 
 # outputs
 tessera render m.vtu -o a.bmp => end it in .exr, .png => R
@@ -196,14 +250,20 @@ tessera render m.vtu -o nowhere/a.png => make the directory first, or name anoth
     => mkdir nowhere; S -o nowhere/a.png --size 9x9
 mkdir b.png; R -o b.png => name a file, not a directory => R -o b.png/a.png
 R -o - --report - => give one of them a file => R -o - --report r.json
+R -o - --resume => leave it out => R -o -
+R -o - -o - => give it once => R -o -
+tessera render m.vtu -o a.mp4 --peel 0.5 => name images => film m.vtu --peel 0.5
 tessera render m.vtu -o - --peel 0.5 => name a file with -o => R --peel 0.5
 printf 'exit 1' > ffmpeg; chmod +x ffmpeg; PATH=.:$PATH; S -o a.gif --size 9x9 => or write a_%04d.png => S -o a_%04d.png
 R --frame-rate 25 => or leave it out => R
 R --outline --annotation-layer l.jpg => name a .png or an .exr => R --outline --annotation-layer l.png
-R -o a.exr --half --background 1e6,0,0 => write float => R -o a.exr --background 1e6,0,0
+tessera render m.vtu -o a.exr --size 9x9 --half --background 1e6,0,0 => write float => R -o a.exr --background 1e6,0,0
 tessera render m.vtu -o a.jpg --size 65536x1 => write .png => S --size 65536x1
 PATH=/nowhere $program render m.vtu -o a.mp4 => write a_%04d.png => tessera render m.vtu -o a_%04d.png --size 9x9
 tessera convert m.vtu a.xyz => choose .vtu or .tets => tessera convert m.vtu a.tets
+tessera convert m.vtu a.stl => choose .vtu or .tets => tessera convert m.vtu a.tets
+tessera convert m.vtu a.pvtu => is what convert --pieces writes => tessera convert m.vtu a.pvtu --pieces 2
+printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => (NumPy array) is not read; write it as .raw => I v.raw $raw
 tessera convert v.vti a.png => choose .vti, .vtr, .nrrd => tessera convert v.vti a.nrrd
 tessera convert m.vtu m.vtu => choose another name => tessera convert m.vtu b.vtu
 tessera convert c.vtk b.tets => write .vtu, or smooth it => tessera convert c.vtk b.tets --smooth
@@ -212,6 +272,11 @@ sed '0,/0 1 2 3</s//0 1 2 1e99</' t.vtu > b.vtu; tessera convert b.vtu b.tets
 tessera convert uneven.vtr b.nrrd => write .vtr or .bricks => tessera convert uneven.vtr b.bricks
 tessera convert m.vtu b.vtu --partition file => give their number too
     => tessera convert m.vtu b.pvtu --partition file --pieces 2
+tessera generate castle b.vtu => kinds are demo, cube => tessera generate tet b.vtu
+tessera generate cube b.vtu towers=3 => it takes n, jitter => tessera generate cube b.vtu n=3
+tessera generate cube b.vtu n=many => is not a number => tessera generate cube b.vtu n=3
+tessera generate cube b.vtu n=2 n=3 => give it once => tessera generate cube b.vtu n=3
+tessera generate cube b.vtu n=1e9 => n must be in 1 .. 1000 => tessera generate cube b.vtu n=9
 tessera generate cube b.vtu n => write NAME=VALUE => tessera generate cube b.vtu n=2
 R -o "$(printf 'n%.0s' $(seq 300)).png" => give a shorter name => R
 ln -s loop loop; R -o loop/a.png => check the disk and the file system => R
@@ -235,7 +300,7 @@ def lines(rows):
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]  # outwards
-VIEW = '{"position": [%s, 0, 9], "focal_point": [%s, 0, 0], "view_up": [0, 1, 0], "parallel_scale": 2}'
+VIEW = '{"position": [0, 0, 9], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "parallel_scale": 2}'
 CAMERA = "position 0 0 9\nfocal_point 0 0 0\nview_up 0 1 0\nparallel_scale 2\n"
 
 
@@ -318,9 +383,9 @@ ENSIGHT = {
     + "tetra4\n         1\n         1         2         3         4\n",
 }
 FILES = ENSIGHT | {
-    "c.json": VIEW % (0, 0), "far.json": VIEW % (50, 50), "scans/": "", "empty.vtu": "", "t.vtu.txt": "nothing known",
-    "t.vtu": VTU, "t0.vtu": VTU, "t1.vtu": VTU.replace('"f"', '"g"'), "c.vtk": LEGACY, "a.ply": PLY,
-    "uneven.vtr": UNEVEN, "a.nhdr": DETACHED, "a0.raw": "1234", "a1.raw": "5678", "a2.raw": "9",
+    "c.json": VIEW, "scans/": "", "empty.vtu": "", "empty.ply": "",
+    "t.vtu.txt": "nothing known", "t.vtu": VTU, "t0.vtu": VTU, "t1.vtu": VTU.replace('"f"', '"g"'), "c.vtk": LEGACY,
+    "a.ply": PLY, "uneven.vtr": UNEVEN, "a.nhdr": DETACHED, "a0.raw": "1234", "a1.raw": "5678", "a2.raw": "9",
     "alone.foam": "", "a.xyz": PLOT3D,
 }
 
@@ -332,7 +397,7 @@ view_up 0 1 0\n => view_up 0 1 0\nview_up 0 1 0\n => is given twice; keep one
 parallel_scale 2 => parallel_scale 2\nview_angle 9 => keep the first for an orthographic view
 parallel_scale 2\n => => give the first for an orthographic view
 position 0 0 9\n => => give the eye's place, three numbers"""),
-    ("R --camera", "d.json", VIEW % (0, 0), r"""
+    ("R --camera", "d.json", VIEW, r"""
 9 => "9" => give numbers only"""),
     ("R --camera", "c.pvcc", PVCC, r"""
 PVCameraConfiguration => Camera => save the camera in ParaView as .pvcc
@@ -473,7 +538,7 @@ def make_data(tessera, folder: Path):
 
 def is_lacking(said):
     """Whether this build or machine cannot do what the command asks for."""
-    return re.search("which (is not installed|this build leaves out)|out of pty devices", said)
+    return re.search("which is not installed|this build (leaves|has no)|out of pty devices", said)
 
 
 def rows_of(text):
@@ -510,9 +575,10 @@ class Trial:
         return done.returncode, faults, "\n".join((said, re.sub(r"\n +", " ", said), re.sub(r"\n +", "; ", said)))
 
     def refused(self, command, advice, place, warns=False):
-        """What is wrong with the message."""
+        """What is wrong with the output: one line reports the error with the advice, and no image is written."""
         status, faults, said = self.run(command, place)
-        if is_lacking(said) or (advice in said and (status in (2, 3) and len(faults) == 1 or status == 0 and warns)):
+        is_refused = status in (2, 3) and len(faults) == 1 and not (status == 2 and (place / "a.png").exists())
+        if is_lacking(said) or (advice in said and (is_refused or (status == 0 and warns))):
             return []
         return [f"{command}\n  status {status}, '{advice}' awaited: {said[: len(said) // 3].strip()}"]
 
@@ -529,6 +595,7 @@ class Trial:
         whole = (place / name).read_bytes()
         status, _, said = self.run(f"{command} {name}", place)
         wrong = [f"{command} {name}\n  status {status}: {said.strip()}"] if status and not is_lacking(said) else []
+        (place / "a.png").unlink(missing_ok=True)
         for old, new, advice in rows_of(changes):
             old, new = (part.encode().decode("unicode_escape").encode("latin1") for part in (old, new))
             assert old in whole, (name, old)

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -132,41 +131,6 @@ TEST(Annotations, TheReportListsWhatWasGiven) {
       tessera({"render", folder.cube(), "--size", "8x8", "-o", folder / "b.png", "--report", folder / "s.json"}).status,
       0);
   EXPECT_FALSE(nlohmann::json::parse(contents(folder / "s.json")).at("method").contains("annotation"));
-}
-
-TEST(Annotations, ReportsErrorsInOneLineBeforeWriting) {
-  const Folder folder;
-  const std::string picture = folder / "a.png";
-  struct Case {
-    Words words;
-    const char* message;
-  };
-  for (const Case& c : {
-           Case{{"--annotate", "{tiem}"}, "--annotate: {tiem} is unknown; use {field} {time} {file}"},
-           Case{{"--color-bar=middle"}, "--color-bar: 'middle' is not a place; use top-left or top"},
-           Case{{"--axes=all"}, "--axes: 'all' is unknown; use triad, box or both"},
-           Case{{"--outline=red"}, "--outline: takes no value"},
-           Case{{"--color-bar-title", "T"}, "--color-bar-title: has no effect without --color-bar"},
-           Case{{"--color-bar", "--color-bar-range", "5"}, "--color-bar-range: '5' is not two numbers; write LOW,HIGH"},
-           Case{{"--color-bar", "--color-bar-range", "5,1"}, "--color-bar-range: '5,1' does not ascend"},
-           Case{{"--color-bar", "--color-bar-scale", "cubic"}, "--color-bar-scale: 'cubic' is unknown"},
-           Case{{"--color-bar", "--color-bar-scale", "log", "--color-bar-range=-1,5"}, "give --color-bar-range"},
-           Case{{"--annotate", "a", "--annotation-size", "2000"}, "--annotation-size 2000: it must be 4 to 1000"},
-           Case{{"--annotation-size", "20"}, "--annotation-size: has no effect without"},
-           Case{{"--axes", "--length-unit", "mm"}, "--length-unit: has no effect without --axes=box or --scale-bar"},
-           Case{{"--outline", "--annotation-layer", folder / "l.pfm"}, "it has alpha; name a .png or an .exr"},
-           Case{{"--outline", "--annotation-layer", folder / "l.deep.exr"}, "name a .png or an .exr"},
-           Case{{"--outline", "--annotation-layer", picture}, "a.png"},
-       }) {
-    const auto run = tessera(joined({"render", folder.cube(), "--size", "20x20", "-o", picture}, c.words));
-    EXPECT_EQ(run.status, 2) << c.message;
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_NE(run.err.find(c.message), std::string::npos) << run.err;
-    EXPECT_EQ(folder.names(), Words{"cube.vtu"});
-  }
-  const auto deep = tessera({"render", folder.cube(), "--size", "20x20", "-o", folder / "a.deep.exr", "--outline"});
-  EXPECT_EQ(deep.status, 2);
-  EXPECT_NE(deep.err.find("deep image: it is not annotated"), std::string::npos) << deep.err;
 }
 
 TEST(Annotations, ReportsAMachineWithoutFonts) {

@@ -74,23 +74,6 @@ TEST_F(ClipCommand, ThresholdOfAVolumeLeavesOutVoxelsWithASampleOutOfIt) {
   EXPECT_NE(none.err.find("no sample's value is in --threshold"), std::string::npos) << none.err;
 }
 
-TEST_F(ClipCommand, ReportsErrorsInOneLine) {
-  const std::pair<Names, std::string> faults[] = {
-      {{"--clip", "1,2,3"}, "--clip: '1,2,3' is not PX,PY,PZ,NX,NY,NZ"},
-      {{"--clip", "0,0,0,0,0,0"}, "has the normal 0,0,0"},
-      {{"--clip", "box:0,0,0,0,1,1"}, "is flat; give two opposite corners"},
-      {{"--clip", "9,0,0,1,0,0"}, "nothing is on the side that --clip keeps"},
-      {{"--threshold", "3,2"}, "write the smaller number first"},
-      {{"--threshold", "1"}, "is not two numbers; write MIN,MAX"},
-      {{"--threshold", "900,901"}, "no cell has all its values in --threshold"}};
-  for (const auto& [arguments, words] : faults) {
-    const Outcome outcome = render(arguments);
-    EXPECT_EQ(outcome.status, 2) << words;
-    EXPECT_EQ(outcome.error_lines(), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-  }
-}
-
 TEST_F(ClipCommand, GivesOnePictureOnAnyNumberOfRanks) {
   if (!has_mpirun()) GTEST_SKIP() << "no mpirun";
   const std::string pieces = folder / "pieces.pvtu";

@@ -89,17 +89,6 @@ TEST_F(LikeReport, HasAllViewsOfAnOrbit) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(same.at("frames")[i].at("view"), like.at("frames")[i].at("view"));
 }
 
-TEST_F(LikeReport, RefusesFilesThatAreNotReports) {
-  for (const char* text : {"{}", "[1]", "{\"mesh\": 1}", "no JSON", "{\"frames\": []}"}) {
-    const std::string file = folder_.file("like.json", text);
-    const Outcome run = tessera({"render", first_, "-o", folder_ / "a.png", "--like", file});
-    EXPECT_EQ(run.status, 2) << text << run.err;
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_NE(run.err.find("like.json"), std::string::npos) << run.err;
-  }
-  EXPECT_EQ(tessera({"render", first_, "-o", folder_ / "a.png", "--like", folder_ / "none.json"}).status, 2);
-}
-
 TEST(LikeReportOfVolumes, GivesOtherSamplesTheSameColours) {
   const Folder folder;
   for (const char* n : {"12", "16"})

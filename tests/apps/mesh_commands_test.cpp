@@ -280,43 +280,11 @@ TEST(Convert, PiecesNeverReplaceTheInput) {
   EXPECT_EQ(contents(folder / "a_0001.vtu"), before);
 }
 
-TEST(Convert, RefusesFormatsThatItDoesNotWrite) {
-  const Folder folder;
-  const auto mesh = folder.cube();
-  for (const char* name : {"a.stl", "a.pvtu", "a"}) {
-    const auto run = tessera({"convert", mesh, folder / name});
-    EXPECT_EQ(run.status, 2) << name;
-    EXPECT_EQ(run.error_lines(), 1u);
-    EXPECT_FALSE(std::filesystem::exists(folder / name));
-  }
-  // An input format that is not supported: no other output helps.
-  const auto array = tessera({"convert", folder.file("a.npy", "\x93NUMPY"), folder / "a.nrrd"});
-  EXPECT_EQ(array.status, 2);
-  EXPECT_NE(array.err.find("its format (NumPy array) is not read"), std::string::npos) << array.err;
-}
-
 TEST(Generate, MakesEveryKindThatItsHelpLists) {
   const Folder folder;
   const auto run = tessera({"generate", "tet", folder / "tet.vtu"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find("1 tets"), std::string::npos) << run.err;
-}
-
-TEST(Generate, RefusesUnknownKindsAndParametersWithTheList) {
-  const Folder folder;
-  for (const std::vector<std::string>& words : {std::vector<std::string>{"castle"},
-                                                {"cube", "towers=3"},
-                                                {"cube", "n"},
-                                                {"cube", "n=many"},
-                                                {"cube", "n=2", "n=3"},
-                                                {"cube", "n=1e9"}}) {
-    std::vector<std::string> arguments = {"generate", words[0], folder / "a.vtu"};
-    arguments.insert(arguments.end(), words.begin() + 1, words.end());
-    const auto run = tessera(arguments);
-    EXPECT_EQ(run.status, 2) << words.back();
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_EQ(folder.names().size(), 0u);
-  }
 }
 
 }  // namespace

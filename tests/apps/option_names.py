@@ -8,8 +8,8 @@ api/options/option_table.cpp, and a command's sources name options of that comma
 recommends is that of a format which is read (io/formats/format_table.cpp) or written (the option table). First checks
 itself: each line of WRONG has to be refused.
 
-The list of options in docs/REFERENCE.md has to be the one that --write writes there, between two marker lines. Exit
-status 1 if there is a fault.
+Options named in the manual (MANUAL) exist too. The list of options in docs/REFERENCE.md has to be the one that --write
+writes there, between two marker lines. Exit status 1 if there is a fault.
 
     option_names.py SOURCE_TREE [--write]
 """
@@ -23,6 +23,8 @@ FOLDERS = """include scene system colormaps cells io readers integrals exchange 
              reference frame api datasets annotation analysis""".split()
 PROGRAMS = ["apps", "server"]  # which may name options
 TABLE = "api/options/option_table.cpp"
+MANUAL = ["docs/GUIDE.md", "docs/REFERENCE.md", "docs/FORMATS.md", "docs/SERVER.md"]
+STATES, CONTROLS = "docs/SERVER.md", "server/web/wording.js"  # which list options of states and of the page
 FORMATS = "io/formats/format_table.cpp"
 PAGE, BEGIN, END = "docs/REFERENCE.md", "<!-- option_names.py begin -->\n", "<!-- option_names.py end -->\n"
 COMMANDS = "render serve info convert generate chart timing formats presets help completion".split()
@@ -198,6 +200,18 @@ def main():
         name = file.relative_to(tree).as_posix()
         for line, text in literals(file.read_text(encoding="utf-8")):
             faults += [f"{name}:{line}: {fault}" for fault in names.faults(name, text)]
+    others = OWN | {"oversubscribe", "timeout"}  # of mpirun and timeout
+    for name in MANUAL:
+        for number, line in enumerate((tree / name).read_text(encoding="utf-8").splitlines(), 1):
+            unknown = set(OPTION.findall(line)) - set(names.options) - others
+            faults += [f"{name}:{number}: --{option} is not an option" for option in unknown]
+    controls = (tree / CONTROLS).read_text(encoding="utf-8").partition("controls = {")[2].partition("};")[0]
+    for name in re.findall(r'([a-z-]+)"?: "', controls):
+        if "serve" not in names.options.get(name, ()):
+            faults.append(f"{CONTROLS}: {name} is not an option of serve")
+    states = (tree / STATES).read_text(encoding="utf-8")
+    keys = [keys[0] for _, keys, _, traits, _ in option_rows(tree) if "state" in traits]
+    faults += [f"{STATES}: `{key}` of states is missing" for key in keys if f"`{key}`" not in states]
     if page != (tree / PAGE).read_text(encoding="utf-8"):
         faults.append(f"{PAGE}: the list of options is not that of {TABLE}; run {Path(__file__).name} {tree} --write")
     if len(sources) < 100:

@@ -108,18 +108,6 @@ TEST(Outputs, FilmsOfARealFfmpegHaveAllPicturesInTheirColours) {
   EXPECT_EQ(decoded(folder / "odd.mp4", bytes, true).pictures, 1u);
 }
 
-TEST(Outputs, WithoutFfmpegAFilmIsRefusedBeforeAnythingIsRead) {
-  const Folder folder;
-  const std::string mesh = folder.cube(), path = std::getenv("PATH");
-  ::setenv("PATH", "/nowhere", 1);
-  const Outcome run = tessera({"render", mesh, "-o", folder / "a.mp4", "--orbit", "3"});
-  ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(run.status, 2);
-  EXPECT_EQ(run.error_lines(), 1u);
-  for (const char* words : {"ffmpeg", "apt install", "_%04d.png"})
-    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
-}
-
 TEST(Outputs, AnImageOnStandardOutputEqualsTheFile) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -136,30 +124,6 @@ TEST(Outputs, AReportOnStandardOutputIsTheOnlyOutput) {
                                "--verify", "10", "--report", "-"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(nlohmann::json::parse(run.out).at("frames").size(), 1u);
-}
-
-TEST(Outputs, RefusesIncompatibleOutputs) {
-  const Folder folder;
-  const std::string mesh = folder.cube();
-  const std::vector<std::vector<std::string>> wrong = {{"-o", "-", "--report", "-"},
-                                                       {"-o", "-", "--resume"},
-                                                       {"-o", folder / "a.png", "--frame-rate", "25"},
-                                                       {"-o", "-", "-o", "-"}};
-  for (const auto& words : wrong) {
-    std::vector<std::string> all = {"render", mesh};
-    all.insert(all.end(), words.begin(), words.end());
-    const Outcome run = tessera(all);
-    EXPECT_EQ(run.status, 2) << run.err;
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_TRUE(run.out.empty());
-  }
-}
-
-TEST(Outputs, ReportsAnEmptyStandardInput) {
-  const Folder folder;
-  const Outcome run = tessera({"render", "-", "-o", folder / "a.png"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("standard input: it is empty"), std::string::npos) << run.err;
 }
 
 }  // namespace

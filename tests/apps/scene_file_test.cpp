@@ -52,16 +52,6 @@ TEST(SceneFile, TheCommandLineOverridesIt) {
   EXPECT_EQ(tessera({"render", "--config", scene}).status, 2);  // none.vtu
 }
 
-TEST(SceneFile, NamesUnknownOptions) {
-  const Folder folder;
-  const std::string scene = folder.file("s.toml", "feild = \"f\"\n");
-  const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--config", scene});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("s.toml: 'feild' is not an option of render; did you mean field?"), std::string::npos)
-      << run.err;
-  EXPECT_EQ(tessera({"render", "--config", folder / "none.toml"}).status, 2);
-}
-
 TEST(SceneFile, KeepsAnyCharacter) {
   const Folder folder;
   const std::string scene = folder / "s.toml", picture = folder / "a.png";

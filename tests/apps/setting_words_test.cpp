@@ -36,36 +36,6 @@ std::string error_line(const std::vector<std::string>& arguments) {
   return words;
 }
 
-TEST(SettingWords, ErrorLinesNameOptions) {
-  const Folder folder;
-  const auto mesh = folder.cube(), samples = folder.file("v.raw", std::string(8, '\0'));
-  const std::vector<std::string> head = {"render", mesh, "--quiet", "-o", folder / "a.png"};
-  const std::pair<std::vector<std::string>, std::string> cases[] = {
-      {{"--deep-accuracy", "2", "-o", folder / "d.deep.exr"}, "--deep-accuracy 2: it must be 1e-6 to 1"},
-      {{"--rasterizer", "scanline", "--projection", "perspective"},
-       "--rasterizer scanline: it projects orthographically only; use an orthographic view, or --rasterizer planes"},
-      {{"--integrator", "sampled:4", "-o", folder / "d.deep.exr"},
-       "deep image: --integrator sampled:4 gives a segment other light than its parts; use exact or auto"},
-      {{"--compositor", "gl-fragment", "--backend", "osmesa", "--exchange", "runs"},
-       "--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments"},
-      {{"--backend", "osmesa,cpu"}, "--backend: 2 words for 1 compositors; give one, or one for each"},
-      {{"--projectors", "2"}, "--projectors 2: this job has 1 rank; give 1 to 1, or start more with mpirun -n"},
-      {{"--memory", "1M", "--size", "1024x1024", "--threads", "1"},
-       "--memory: projection has 1 MiB of it and needs at least 2 MiB for this mesh and image; raise it"}};
-  for (const auto& [arguments, line] : cases) {
-    std::vector<std::string> all = head;
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    EXPECT_EQ(error_line(all), "tessera: " + line);
-  }
-  EXPECT_EQ(error_line({"info", samples}),
-            "tessera: " + samples +
-                ": a raw file does not state its dimensions and type; give --dims WxHxD --type "
-                "uint8, or name it NAME_WxHxD_uint8.raw");
-  const auto trace = folder.file("t.json", "[]");
-  EXPECT_EQ(error_line({"timing", trace}),
-            "tessera: " + trace + ": no span of Tessera in it; give a file that tessera render --timing wrote");
-}
-
 TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   const Folder folder;
   const auto mesh = folder.cube(), report = folder / "r.json";

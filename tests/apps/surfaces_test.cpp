@@ -68,26 +68,6 @@ TEST(Surfaces, OfBlocksMayHaveColonsInTheirNames) {
   EXPECT_NE(wrong.err.find("'rde'"), std::string::npos) << wrong.err;
 }
 
-TEST(Surfaces, OfFacesAreRefusedInOneLineWithTheReason) {
-  const Folder folder;
-  const std::string mesh = folder.cube();
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& word) {
-    std::vector<std::string> arguments{"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto run = tessera(arguments);
-    EXPECT_EQ(run.status, 2) << run.err;
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
-  };
-  refused({"--surface", "skin"}, "no block 'skin': it is not made of named blocks; give boundary or a file");
-  refused({"--surface", "skin.ply"}, "'skin.ply' is neither boundary nor a file that is there");
-  refused({"--surface", "boundary:reddish"}, "not a colour");
-  refused({"--surface", "boundary:red:2"}, "opacity 2");
-  refused({"--surface", mesh}, "not a surface of triangles");
-  refused({"--surface", "boundary", "--rasterizer", "scanline"}, "--surface: ");
-  refused({"--surface", folder.file("broken.ply", "ply\nformat ascii 1.0\n")}, "broken.ply");
-}
-
 TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
@@ -103,35 +83,6 @@ TEST(Surfaces, PrintsWarningsWithQuiet) {
   EXPECT_EQ(run.status, 0);
   ASSERT_EQ(run.error_lines(), 1u) << run.err;
   EXPECT_NE(run.err.find("warning"), std::string::npos) << run.err;
-}
-
-TEST(Surfaces, AreRefusedInOneLineWithTheReason) {
-  const Folder folder;
-  const std::string mesh = folder.cube();
-  const auto refused = [&](std::vector<std::string> more, const std::string& word) {
-    std::vector<std::string> arguments{"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto run = tessera(arguments);
-    EXPECT_EQ(run.status, 2) << run.err;
-    EXPECT_EQ(run.error_lines(), 1u) << run.err;
-    EXPECT_NE(run.err.find("--iso"), std::string::npos) << run.err;
-    EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
-  };
-  refused({"--iso", "high"}, "not a number");
-  refused({"--iso", "0.5:reddish"}, "not a colour");
-  refused({"--iso", "0.5:red:0"}, "opacity");
-  refused({"--iso", "0.5:red:0.5:1"}, "not a number");
-  refused({"--iso", "0.5", "--rasterizer", "scanline"}, "planes");
-  refused({"--iso", "0.5", "--backend", "osmesa"}, "CPU");
-  ASSERT_EQ(tessera({"generate", "ripples", folder / "grid.vti", "n=8", "--quiet"}).status, 0);
-  const auto of_grid = [&](std::vector<std::string> more, const std::string& out) {
-    std::vector<std::string> arguments{"render", folder / "grid.vti", "-o", folder / out, "--iso", "0.5", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto run = tessera(arguments);
-    EXPECT_EQ(run.status, 2);
-    return run.err;
-  };
-  EXPECT_NE(of_grid({"--integrator", "sampled"}, "a.png").find("--iso: iso-surfaces need"), std::string::npos);
 }
 
 TEST(Surfaces, OfGridsAreVerifiedAndTheSameOnAnyNumberOfRanks) {

@@ -94,22 +94,5 @@ TEST_F(TimeSteps, AStepOfASeriesIsChosenTheSameWay) {
   EXPECT_NE(beyond.err.find("there is no time step 2, it has 2"), std::string::npos) << beyond.err;
 }
 
-TEST_F(TimeSteps, WrongStepsAreOneLine) {
-  const std::pair<std::string, std::string> faults[] = {{"0:4", "there is no time step 4, it has 4"},
-                                                        {"3:1", "ends before it begins"},
-                                                        {"0:3:0", "is not a whole number from 1 up"},
-                                                        {"x:3", "is not a whole number from 0 up"},
-                                                        {"all", "4 frames need a numbered name"}};
-  for (const auto& [steps, words] : faults) {
-    const Outcome outcome = render("one.pfm", steps);
-    EXPECT_EQ(outcome.status, 2) << steps;
-    EXPECT_EQ(outcome.error_lines(), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-  }
-  const Outcome info = tessera({"info", volume, "--time-step", "all"});
-  EXPECT_EQ(info.status, 2);
-  EXPECT_NE(info.err.find("which only render makes"), std::string::npos) << info.err;
-}
-
 }  // namespace
 }  // namespace tessera::apps
