@@ -9,7 +9,6 @@
 
 #include "apps/help/completion.hpp"
 #include "apps/help/help_pages.hpp"
-#include "apps/help/manual_page.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
 #include "tessera/program/render_options.hpp"

@@ -8,10 +8,13 @@
 
 #include "apps/commands/generate_command.hpp"
 #include "tessera/program/text.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {
 
+constexpr std::string_view program_description =
+    "Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.";
 constexpr std::size_t page_columns = 100, left_column = 30;
 
 /// Breaks text into lines; a word that is too long has its own line.
@@ -46,7 +49,12 @@ void add_entry(std::string& page, const std::string& form, std::string_view desc
   page += '\n';
 }
 
-}  // namespace
+/// A command's options under one title, without words that have no name. For `render` only the basic ones, unless
+/// `all`.
+struct HelpTopic {
+  std::string_view title;
+  std::vector<const OptionRow*> rows;
+};
 
 std::vector<HelpTopic> help_topics(const CommandRow& command, bool all) {
   std::vector<HelpTopic> result;
@@ -65,6 +73,43 @@ std::vector<HelpTopic> help_topics(const CommandRow& command, bool all) {
   }
   return result;
 }
+
+/// "tessera render [OPTIONS] INPUT [MORE...]"; null: for the program.
+std::string usage_of(const CommandRow* command) {
+  if (command == nullptr) return "tessera COMMAND";
+  std::string line = fmt::format("tessera {} [OPTIONS]", command->name);
+  for (const OptionRow* row : option_rows(command->trait)) {
+    if (!row->is(Trait::positional)) continue;
+    const std::string form = shown_name(*row) + (row->is(Trait::list) ? "..." : "");
+    line += row->is(Trait::required) ? " " + form : " [" + form + "]";
+  }
+  return line;
+}
+
+/// Escapes text for roff: a minus sign is not a hyphen, and no line starts a request.
+std::string escaped(std::string_view text) {
+  std::string result;
+  bool begins = true;
+  for (const char c : text) {
+    if (begins && (c == '.' || c == '\'')) result += "\\&";
+    begins = c == '\n';
+    if (c == '\\')
+      result += "\\e";
+    else if (c == '-')
+      result += "\\-";
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string entry(std::string_view form, std::string_view text) {
+  return fmt::format(".TP\n.B {}\n{}\n", escaped(form), escaped(text));
+}
+
+std::string verbatim(std::string_view text) { return fmt::format(".nf\n{}\n.fi\n", escaped(text)); }
+
+}  // namespace
 
 std::vector<std::string> written_names(const OptionRow& row) {
   if (row.is(Trait::positional)) return {upper_case(row.names)};
@@ -93,17 +138,6 @@ std::string option_form(const OptionRow& row, bool all) {
     type = bar == std::string::npos ? "WORD" : type.substr(0, bar + 1) + "...";
   }
   return form + " " + type;
-}
-
-std::string usage_of(const CommandRow* command) {
-  if (command == nullptr) return "tessera COMMAND";
-  std::string line = fmt::format("tessera {} [OPTIONS]", command->name);
-  for (const OptionRow* row : option_rows(command->trait)) {
-    if (!row->is(Trait::positional)) continue;
-    const std::string form = shown_name(*row) + (row->is(Trait::list) ? "..." : "");
-    line += row->is(Trait::required) ? " " + form : " [" + form + "]";
-  }
-  return line;
 }
 
 std::string help_page(const CommandRow* command, bool all) {
@@ -137,6 +171,37 @@ std::string help_page(const CommandRow* command, bool all) {
     page += all ? "\nThe guide, docs/GUIDE.md, is organized by task.\n"
                 : "--help-all lists all options, `tessera formats` the files that are read.\n";
   if (command->trait == Trait::generate) page += '\n' + generator_help() + '\n';
+  return page;
+}
+
+std::string manual_page(const CommandRow* command) {
+  const std::string name = command == nullptr ? "tessera" : fmt::format("tessera-{}", command->name);
+  const std::string_view description = command == nullptr ? program_description : command->description;
+  std::string page = fmt::format(".TH {} 1 \"\" \"Tessera {}\" \"Tessera\"\n.SH NAME\n{} \\- {}\n", upper_case(name),
+                                 TESSERA_VERSION, escaped(name), escaped(description));
+  page += ".SH SYNOPSIS\n" + escaped(usage_of(command)) + "\n";
+  if (command == nullptr) {
+    page += ".SH COMMANDS\n";
+    for (const CommandRow& each : command_rows())
+      page += entry(each.name, fmt::format("{}; see tessera-{}(1).", each.description, each.name));
+  } else {
+    std::string arguments;
+    for (const OptionRow* row : option_rows(command->trait))
+      if (row->is(Trait::positional)) arguments += entry(shown_name(*row), row->help);
+    if (!arguments.empty()) page += ".SH ARGUMENTS\n" + arguments;
+    const auto topics = help_topics(*command, true);
+    if (!topics.empty()) page += ".SH OPTIONS\n";
+    for (const HelpTopic& topic : topics) {
+      if (topics.size() > 1) page += ".SS " + escaped(topic.title) + "\n";
+      for (const OptionRow* row : topic.rows) page += entry(option_form(*row, true), row->help);
+    }
+    if (command->trait == Trait::generate) page += ".SH DETAILS\n" + verbatim(generator_help());
+    if (!command->examples.empty()) page += ".SH EXAMPLES\n" + verbatim(command->examples);
+  }
+  page +=
+      ".SH EXIT STATUS\n0 if all is done, 2 if arguments or input are wrong, 3 if the machine failed (memory, disk, a "
+      "rank), 4 if "
+      "\\-\\-verify found more error than was asked for.\n";
   return page;
 }
 
