@@ -2,7 +2,6 @@
 #include "io/mesh/block_surface.hpp"
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 
 #include "api/dataset.hpp"
 #include "frame/mesh/boundary_faces.hpp"
@@ -32,10 +31,8 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   }
   read.grid_as_mesh = true;
   const Dataset volume = Dataset::open(files, read);
-  TriangleMesh boundary;
-  tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
-    boundary = frame::boundary_faces(StateAccess::of(volume).mesh).mesh;
-  });
+  TriangleMesh boundary =
+      scene::with_threads(options.threads, [&] { return frame::boundary_faces(StateAccess::of(volume).mesh).mesh; });
   if (boundary.triangles.empty())
     throw scene::bad_input(
         fmt::format("{}: the block {} has no boundary; name another", files.front().string(), scene::quote(block)));

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "api/dataset.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 
 #include "api/queries/mesh_check.hpp"
@@ -20,9 +18,7 @@ inline namespace v0_1 {
 std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads, scene::Trace* trace) const {
   std::call_once(once_, [&] {
     const scene::TraceScope timing(trace, "prepare");
-    tbb::task_arena(scene::threads_for(threads)).execute([&] {
-      prepared_ = std::make_shared<const projection::PreparedMesh>(mesh);
-    });
+    prepared_ = scene::with_threads(threads, [&] { return std::make_shared<const projection::PreparedMesh>(mesh); });
   });
   return prepared_;
 }

@@ -26,7 +26,7 @@ Dataset Dataset::of(const MeshArrays& arrays) {
   state->counts = mesh.counts;
   state->higher_order = mesh.higher_order;
   state->notes = std::move(mesh.notes);
-  state->facts = scene::facts_of(state->mesh, 0);
+  state->facts = scene::facts_of(state->mesh);
   state->source = "mesh";
   state->format = "arrays";
   state->field_name = arrays.field_name;
@@ -51,7 +51,7 @@ Dataset Dataset::of(const GridArrays& arrays) {
 Dataset Dataset::of(std::shared_ptr<const SampleSource> samples) {
   auto state = std::make_shared<State>();
   state->samples = std::move(samples);
-  state->ranges = std::make_shared<const volume::CellRanges>(*state->samples, 0);
+  state->ranges = std::make_shared<const volume::CellRanges>(*state->samples);
   if (state->ranges->range.empty())
     throw scene::bad_input("grid: none of its samples is finite; give a field that has values");
   api::complete_grid(*state);
@@ -74,7 +74,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
     state->counts = mesh.counts;
     state->higher_order = mesh.higher_order;
     state->notes = std::move(mesh.notes);
-    state->facts = frame::agree_facts(*transport, state->mesh, 0);
+    state->facts = frame::agree_facts(*transport, state->mesh);
     if (state->facts.tets == 0) throw scene::bad_input("mesh: no rank has a cell; give at least one");
     state->ranks = transport->size();
     state->global_tet = frame::numbered_by_rank(*transport, state->mesh.tets.size());

@@ -16,14 +16,15 @@
 #include "exchange/transport.hpp"
 #include "frame/grid/scan_together.hpp"
 #include "frame/grid/shared_volume.hpp"
-#include "frame/mesh/render.hpp"
 #include "frame/ranks/distributed_mesh.hpp"
 #include "frame/ranks/roles.hpp"
 #include "io/volume/volume_reader.hpp"
 #include "io/vtk/vtk_field_words.hpp"
+#include "projection/prepared_mesh.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
 #include "scene/scaled_source.hpp"
+#include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
 #include "system/files_read.hpp"
 #include "system/missing_file.hpp"
@@ -93,8 +94,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
   {
     const scene::TraceScope timing(trace, "prepare");
     state->labels = api::take_labels(file, options, transport, volume);
-    state->ranges =
-        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+    state->ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source));
   }
   api::note_byte_order(volume, options, state->ranges->range);
   api::leave_fill_values_out(volume, file, options, transport, state->ranges);
@@ -104,8 +104,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
         frame::FieldOfAll{api::facts_of_grid(volume.source->grid(), range), scene::sample_grid(*volume.source)});
     volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
     const scene::TraceScope timing(trace, "prepare");
-    state->ranges =
-        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+    state->ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source));
     range = state->ranges->range;
     if (range.empty())
       throw scene::bad_input(fmt::format(
@@ -143,7 +142,10 @@ void take_description(cells::MeshFile&& file, Dataset::State& state) {
 /// Moves a mesh into the state, with its corners in the order that needs no copy unless the caller's order must be
 /// kept.
 void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
-  if (!options.keep_corners) frame::order_corners(mesh, options.threads, trace);
+  if (!options.keep_corners) {
+    const scene::TraceScope timing(trace, "prepare");
+    projection::order_corners(mesh);
+  }
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state.mesh = *kept;
   state.owner = std::move(kept);
@@ -175,7 +177,7 @@ class TracedMessages {
 Dataset open_together(std::span<const std::filesystem::path> files, std::optional<InputFile> identified,
                       const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
   const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
-  return api::together(*transport, [&] {
+  const auto open = [&] {
     std::shared_ptr<Dataset::State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     check_axis_scale(options.axis_scale);
@@ -215,7 +217,8 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     state->options.trace = nullptr;  // it may not live as long as the state
     state->options.progress = nullptr;
     return StateAccess::make(std::move(state));
-  });
+  };
+  return scene::with_threads(options.threads, [&] { return api::together(*transport, open); });
 }
 
 }  // namespace

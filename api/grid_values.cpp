@@ -42,7 +42,7 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
   }
   volume.source = std::make_unique<scene::ThresholdSource>(
       std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
-  ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+  ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source));
   fill = scene::find_fill_value(*volume.source, ranges->range);
   if (fill && !fill->is_huge() && !fill->is_outside(threshold))
     volume.notes.push_back(scene::words_on(*fill, "samples"));

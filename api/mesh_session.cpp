@@ -13,8 +13,10 @@
 #include "frame/mesh/peel.hpp"
 #include "frame/ranks/distributed.hpp"
 #include "projection/partition.hpp"
+#include "projection/prepared_mesh.hpp"
 #include "projection/scanline/segment_tuple.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -226,7 +228,7 @@ class MeshOnRanks final : public Session::State {
       share->mesh = scene::subset(state.mesh, mine);
       share->numbers.assign(mine.begin(), mine.end());
     }
-    frame::order_corners(share->mesh, settings().threads);
+    scene::with_threads(settings().threads, [&] { projection::order_corners(share->mesh); });
     mesh.part = share->mesh;
     mesh.global_tet = share->numbers;
     mesh.owner = std::move(share);

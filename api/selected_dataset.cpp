@@ -15,6 +15,7 @@
 #include "frame/ranks/mesh_exchange.hpp"
 #include "frame/ranks/reduce.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -41,7 +42,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state->mesh = *kept;
   state->owner = std::move(kept);
-  state->facts = scene::facts_of(state->mesh, 0);
+  state->facts = scene::facts_of(state->mesh);
   state->of_all =
       from->of_all ? from->of_all
                    : std::make_shared<const frame::FieldOfAll>(frame::FieldOfAll{from->facts, from->field_samples()});
@@ -87,7 +88,8 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   ReadOptions options = data.options;
   options.selection.clip.clear();
   const io::InputFile first = frame::identify_input(data.files.front());
-  auto whole = std::make_shared<const scene::TetMesh>(frame::read_input(data.files, first, options).mesh);
+  auto whole = std::make_shared<const scene::TetMesh>(
+      scene::with_threads(options.threads, [&] { return frame::read_input(data.files, first, options).mesh; }));
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
 }
 

@@ -85,7 +85,7 @@ Scanned scanned(const Run& run) {
   std::vector<std::uint8_t> samples(static_cast<std::size_t>(made->geometry().all_samples().count()));
   made->read(made->geometry().all_samples(), std::span(samples));
   Scanned scanned{scene::MemorySource::of(made->grid(), std::move(samples)), nullptr};
-  scanned.ranges = std::make_shared<const volume::CellRanges>(*scanned.source, 2);
+  scanned.ranges = std::make_shared<const volume::CellRanges>(*scanned.source);
   return scanned;
 }
 

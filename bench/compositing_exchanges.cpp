@@ -308,7 +308,7 @@ void print_composited(int ranks, std::span<const Parts> views) {
 
 void of_volume(const Run& run) {
   const auto source = datasets::generate_volume(run.words.at("volume"), {{"n", run.number("n")}, {"bits", 8}});
-  const auto ranges = std::make_shared<const volume::CellRanges>(*source, 2);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*source);
   const scene::TransferFunction function(
       {{0, {0.1, 0.2, 0.8}, 0.1}, {128, {0.9, 0.8, 0.3}, 0.4}, {255, {1, 0.3, 0.1}, 1}});
   const scene::ImageSize size{run.whole("size"), run.whole("size")};

@@ -5,7 +5,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,6 @@
 
 #include "cells/mix_bits.hpp"
 #include "scene/position_order.hpp"
-#include "scene/threads.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -258,47 +256,39 @@ void remove(const std::vector<KeyedCell>& cells, TetMesh& mesh) {
 
 }  // namespace
 
-std::uint64_t find_duplicate_cells(TetMesh& mesh, bool drop, int threads) {
+std::uint64_t find_duplicate_cells(TetMesh& mesh, bool drop) {
   if (mesh.tets.size() < 2) return 0;
-  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
-    const std::vector<KeyedCell> duplicates = duplicates_of(mesh);
-    if (drop && !duplicates.empty()) remove(duplicates, mesh);
-    return static_cast<std::uint64_t>(duplicates.size());
-  });
+  const std::vector<KeyedCell> duplicates = duplicates_of(mesh);
+  if (drop && !duplicates.empty()) remove(duplicates, mesh);
+  return static_cast<std::uint64_t>(duplicates.size());
 }
 
-std::uint64_t count_duplicate_cells(const TetMeshView& mesh, int threads) {
+std::uint64_t count_duplicate_cells(const TetMeshView& mesh) {
   if (mesh.tets.size() < 2) return 0;
-  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
-    return std::uint64_t{duplicates_of(mesh).size()};
-  });
+  return duplicates_of(mesh).size();
 }
 
-std::vector<std::uint64_t> duplicate_keys(const TetMeshView& mesh, int threads) {
-  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
-    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> lists;
-    CellKeys(mesh).each(
-        [&] { return [&list = lists.local()](std::size_t, std::size_t, std::uint64_t key) { list.push_back(key); }; });
-    return joined_lists(lists);
-  });
+std::vector<std::uint64_t> duplicate_keys(const TetMeshView& mesh) {
+  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> lists;
+  CellKeys(mesh).each(
+      [&] { return [&list = lists.local()](std::size_t, std::size_t, std::uint64_t key) { list.push_back(key); }; });
+  return joined_lists(lists);
 }
 
-std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys, int threads) {
-  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
-    const std::vector<std::uint64_t> repeated = repeated_keys(keys.size(), [&](const auto& begin) {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), grain), [&](const auto& range) {
-        auto use = begin();
-        for (std::size_t k = range.begin(); k < range.end(); ++k) use(k, k + 1, keys[k]);
-      });
+std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys) {
+  const std::vector<std::uint64_t> repeated = repeated_keys(keys.size(), [&](const auto& begin) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), grain), [&](const auto& range) {
+      auto use = begin();
+      for (std::size_t k = range.begin(); k < range.end(); ++k) use(k, k + 1, keys[k]);
     });
-    std::vector<std::uint64_t> times(repeated.size(), 0);
-    std::uint64_t count = 0;
-    if (!repeated.empty())
-      for (const std::uint64_t key : keys)
-        if (const auto at = std::lower_bound(repeated.begin(), repeated.end(), key); at != repeated.end() && *at == key)
-          if (times[static_cast<std::size_t>(at - repeated.begin())]++ > 0) ++count;
-    return count;
   });
+  std::vector<std::uint64_t> times(repeated.size(), 0);
+  std::uint64_t count = 0;
+  if (!repeated.empty())
+    for (const std::uint64_t key : keys)
+      if (const auto at = std::lower_bound(repeated.begin(), repeated.end(), key); at != repeated.end() && *at == key)
+        if (times[static_cast<std::size_t>(at - repeated.begin())]++ > 0) ++count;
+  return count;
 }
 
 }  // namespace tessera::cells

@@ -12,17 +12,17 @@ namespace tessera::cells {
 /// were merged several times. Such cells appear twice as dense as they are. Vertices are kept, and original_cell keeps
 /// the cells' original numbers. Takes O(tets) time, and temporarily 8 bytes a vertex and 6 a cell, plus 16 for each
 /// duplicate.
-std::uint64_t find_duplicate_cells(scene::TetMesh& mesh, bool drop, int threads);
+std::uint64_t find_duplicate_cells(scene::TetMesh& mesh, bool drop);
 
 /// Only counts.
-std::uint64_t count_duplicate_cells(const scene::TetMeshView& mesh, int threads);
+std::uint64_t count_duplicate_cells(const scene::TetMeshView& mesh);
 
 /// A key for each cell of a part of a mesh, in any order, which depends only on the positions of its tets' corners:
 /// cells of two parts with equal keys are duplicates, except for one pair in 2^64.
-std::vector<std::uint64_t> duplicate_keys(const scene::TetMeshView& mesh, int threads);
+std::vector<std::uint64_t> duplicate_keys(const scene::TetMeshView& mesh);
 
 /// The number of keys equal to an earlier one: for the keys of all parts, the result of find_duplicate_cells() for the
 /// whole mesh.
-std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys, int threads);
+std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys);
 
 }  // namespace tessera::cells

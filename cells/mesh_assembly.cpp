@@ -21,7 +21,6 @@
 #include "cells/field_choice.hpp"
 #include "cells/mesh_selection.hpp"
 #include "scene/error.hpp"
-#include "scene/threads.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -33,7 +32,7 @@ using scene::Tet;
 class Assembly {
  public:
   Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
-           const std::string& source, const HigherOrderPlan& plan, int threads)
+           const std::string& source, const HigherOrderPlan& plan)
       : cell_keys_(result.cell_keys),
         notes_(result.notes),
         mesh_(result.mesh),
@@ -42,8 +41,7 @@ class Assembly {
         fields_(fields),
         choice_(choice),
         source_(source),
-        plan_(plan),
-        threads_(threads) {}
+        plan_(plan) {}
 
   void reserve(std::size_t points, std::size_t tets) {
     require_points(points);
@@ -82,10 +80,10 @@ class Assembly {
     counts_.points_unused = unused_points();
     // Cells without a value have been removed, so a blank copy of another does not count as a duplicate.
     if (duplicates == Duplicates::keys) {
-      cell_keys_ = duplicate_keys(mesh_, threads_);
+      cell_keys_ = duplicate_keys(mesh_);
     } else {
       const bool drop = duplicates == Duplicates::drop;
-      const std::uint64_t found = find_duplicate_cells(mesh_, drop, threads_);
+      const std::uint64_t found = find_duplicate_cells(mesh_, drop);
       (drop ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
       if (drop && found > 0) counts_.points_unused = unused_points();
     }
@@ -153,8 +151,7 @@ class Assembly {
       append(tets);
       return;
     }
-    const int at_once = scene::threads_for(threads_);
-    const auto in_flight = 2 * static_cast<std::size_t>(at_once);
+    const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     std::vector<BlockTets> results(in_flight);
     std::size_t next = 0;
     // A result is reused after all others have begun since: by then it has been appended.
@@ -178,12 +175,10 @@ class Assembly {
       append(tets);
     };
     using tbb::filter_mode;
-    tbb::task_arena(at_once).execute([&] {
-      tbb::parallel_pipeline(in_flight,
-                             tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, begin) &
-                                 tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, split) &
-                                 tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, append_next));
-    });
+    tbb::parallel_pipeline(in_flight,
+                           tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, begin) &
+                               tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, split) &
+                               tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, append_next));
   }
 
   void append(const BlockTets& made) {
@@ -252,15 +247,13 @@ class Assembly {
   /// Number of points that no tet uses.
   std::uint64_t unused_points() {
     std::vector<std::uint8_t> is_used(mesh_.positions.size());
-    tbb::task_arena(scene::threads_for(threads_)).execute([&] {
-      constexpr std::size_t grain = 65536;
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), grain), [&](const auto& range) {
-        for (std::size_t t = range.begin(); t < range.end(); ++t)
-          for (const std::uint32_t v : mesh_.tets[t]) {
-            std::atomic_ref<std::uint8_t> point(is_used[v]);
-            if (point.load(std::memory_order_relaxed) == 0) point.store(1, std::memory_order_relaxed);
-          }
-      });
+    constexpr std::size_t grain = 65536;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), grain), [&](const auto& range) {
+      for (std::size_t t = range.begin(); t < range.end(); ++t)
+        for (const std::uint32_t v : mesh_.tets[t]) {
+          std::atomic_ref<std::uint8_t> point(is_used[v]);
+          if (point.load(std::memory_order_relaxed) == 0) point.store(1, std::memory_order_relaxed);
+        }
     });
     for (const std::uint32_t v : higher_order_nodes_) is_used[v] = 1;
     return static_cast<std::uint64_t>(std::ranges::count(is_used, 0));
@@ -275,7 +268,6 @@ class Assembly {
   const FieldChoice& choice_;
   const std::string& source_;
   const HigherOrderPlan& plan_;
-  int threads_;
   std::span<const glm::dvec3> points_;  ///< of the current block
   std::uint32_t first_point_ = 0;
   std::uint64_t cells_before_ = 0;          ///< of the previous blocks
@@ -292,9 +284,9 @@ class Assembly {
 
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
-                                int threads, Duplicates duplicates) {
+                                Duplicates duplicates) {
   AssembledBlocks result;
-  Assembly assembly(result, fields, choice, source, plan, threads);
+  Assembly assembly(result, fields, choice, source, plan);
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
@@ -382,7 +374,7 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const ReadOptions& options
   file.notes = choice.notes;
 
   const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
-  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads,
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan,
                                               options.drop_duplicates ? Duplicates::drop : Duplicates::count);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;

@@ -30,10 +30,10 @@ enum class Duplicates : std::uint8_t { count, drop, keys };
 /// Drops ghost, hidden and NaN cells and splits the rest into tets with the chosen field. Blocks are emptied as they
 /// are used, so that nothing is held twice. A piece of a parallel file must have the field; other blocks without it are
 /// blanked, with a note. Throws Error(bad_input) in one line that begins with the block's source or `source`. The mesh
-/// and the error do not depend on `threads` (0: all cores).
+/// and the error do not depend on the number of threads.
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
-                                int threads = 1, Duplicates duplicates = Duplicates::count);
+                                Duplicates duplicates = Duplicates::count);
 
 /// Notes on the treatment of the cells of a whole file. Throws Error(bad_input) if nothing remains to render.
 std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order,

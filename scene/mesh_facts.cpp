@@ -22,9 +22,9 @@ double longest_side(const Box& box) {
 
 }  // namespace
 
-MeshFacts facts_of(const TetMeshView& mesh, int threads) {
-  MeshFacts facts{bounds(mesh, threads), scalar_range(mesh, threads), 0, mesh.tets.size(), mesh.association};
-  facts.mean_thickness = mean_thickness(facts.box, volume_sum(mesh, facts.box, threads));
+MeshFacts facts_of(const TetMeshView& mesh) {
+  MeshFacts facts{bounds(mesh), scalar_range(mesh), 0, mesh.tets.size(), mesh.association};
+  facts.mean_thickness = mean_thickness(facts.box, volume_sum(mesh, facts.box));
   return facts;
 }
 
@@ -38,7 +38,7 @@ MeshFacts joined(const MeshFacts& a, const MeshFacts& b) {
           a.association};
 }
 
-VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads) {
+VolumeSum volume_sum(const TetMeshView& mesh, const Box& box) {
   const double longest = longest_side(box);
   if (!(longest > 0)) return 0;
   const auto volume_of = [&](const Tet& tet) {
@@ -58,7 +58,7 @@ VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads) {
     for (std::size_t t = first; t < last; ++t) sum += volume_of(mesh.tets[t]);
     return sum;
   };
-  return sum_over_tets(mesh.tets.size(), threads, VolumeSum{0}, of, std::plus<>());
+  return sum_over_tets(mesh.tets.size(), VolumeSum{0}, of, std::plus<>());
 }
 
 double mean_thickness(const Box& box, VolumeSum volume) {

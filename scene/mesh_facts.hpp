@@ -20,7 +20,7 @@ struct MeshFacts {
 };
 
 /// The facts of a whole mesh.
-MeshFacts facts_of(const TetMeshView& mesh, int threads = 1);
+MeshFacts facts_of(const TetMeshView& mesh);
 
 /// Combines the facts of two parts of one mesh; a part without tets changes nothing. Does not set `mean_thickness`,
 /// which needs the box of the whole first, then the sum of volume_sum() over the parts.
@@ -31,7 +31,7 @@ MeshFacts joined(const MeshFacts& a, const MeshFacts& b);
 using VolumeSum = __int128;
 
 /// Sum over the mesh's tets, each rounded down, with the box of the whole mesh. Zero if the box has no extent.
-VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads = 1);
+VolumeSum volume_sum(const TetMeshView& mesh, const Box& box);
 
 /// mean_thickness() from the box and the volume of the whole mesh.
 double mean_thickness(const Box& box, VolumeSum volume);

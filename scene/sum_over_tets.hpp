@@ -3,26 +3,19 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/task_arena.h>
 
 #include <cstddef>
 
-#include "scene/threads.hpp"
-
 namespace tessera::scene {
 
-/// Combines the results of of(first, last) over ranges that make up [0, tets) with join(), on `threads` threads (0: all
-/// cores); one range with one thread. `join` must not depend on the order.
+/// Combines the results of of(first, last) over ranges that make up [0, tets) with join(), in parallel. `join` must not
+/// depend on the order.
 template <class T, class Of, class Join>
-T sum_over_tets(std::size_t tets, int threads, const T& nothing, const Of& of, const Join& join) {
+T sum_over_tets(std::size_t tets, const T& nothing, const Of& of, const Join& join) {
   constexpr std::size_t tets_a_task = 16384;
-  const int at_once = threads_for(threads);
-  if (at_once == 1 || tets <= tets_a_task) return of(std::size_t{0}, tets);
-  return tbb::task_arena(at_once).execute([&] {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, tets, tets_a_task), nothing,
-        [&](const auto& range, const T& sum) { return join(sum, of(range.begin(), range.end())); }, join);
-  });
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, tets, tets_a_task), nothing,
+      [&](const auto& range, const T& sum) { return join(sum, of(range.begin(), range.end())); }, join);
 }
 
 }  // namespace tessera::scene

@@ -13,7 +13,7 @@
 
 namespace tessera::scene {
 
-Box bounds(const TetMeshView& mesh, int threads) {
+Box bounds(const TetMeshView& mesh) {
   const auto join = [](const Box& a, const Box& b) { return Box{glm::min(a.low, b.low), glm::max(a.high, b.high)}; };
   const auto of = [&](std::size_t first, std::size_t last) {
     Box box;
@@ -21,7 +21,7 @@ Box bounds(const TetMeshView& mesh, int threads) {
       for (const std::uint32_t v : mesh.tets[t]) box = join(box, {mesh.positions[v], mesh.positions[v]});
     return box;
   };
-  const Box box = sum_over_tets(mesh.tets.size(), threads, Box(), of, join);
+  const Box box = sum_over_tets(mesh.tets.size(), Box(), of, join);
   // -0 becomes 0: otherwise the result would depend on the order.
   return {box.low + 0.0, box.high + 0.0};
 }
@@ -31,7 +31,7 @@ double mean_thickness(const TetMeshView& mesh) {
   return mean_thickness(box, volume_sum(mesh, box));
 }
 
-std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads) {
+std::array<double, 2> scalar_range(const TetMeshView& mesh) {
   if (mesh.tets.empty()) return {0, 0};
   using Range = std::array<double, 2>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads) {
     }
     return range;
   };
-  const auto [low, high] = sum_over_tets(mesh.tets.size(), threads, Range{infinity, -infinity}, of, join);
+  const auto [low, high] = sum_over_tets(mesh.tets.size(), Range{infinity, -infinity}, of, join);
   return {low + 0.0, high + 0.0};  // -0 becomes 0, as in bounds()
 }
 

@@ -67,8 +67,8 @@ struct TetMeshView {
   }
 };
 
-/// Box of the vertices that tets use. Empty if there are no tets. `threads`, here and below: 0 is all cores.
-Box bounds(const TetMeshView& mesh, int threads = 1);
+/// Box of the vertices that tets use. Empty if there are no tets.
+Box bounds(const TetMeshView& mesh);
 
 /// Volume of the tets over the largest face of their box: the mean length of matter on rays that cross the box along
 /// its shortest side. World units; default extinctions refer to this length, which unlike the box's diagonal accounts
@@ -77,7 +77,7 @@ Box bounds(const TetMeshView& mesh, int threads = 1);
 double mean_thickness(const TetMeshView& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
-std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads = 1);
+std::array<double, 2> scalar_range(const TetMeshView& mesh);
 
 /// A subset of a mesh's tets, in the given order, with the vertices that they use in the mesh's order.
 TetMesh subset(const TetMeshView& mesh, std::span<const std::uint32_t> tets);

@@ -3,6 +3,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 
@@ -14,6 +15,12 @@ namespace tessera::scene {
 inline int threads_for(int asked) {
   const auto most = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   return std::min(asked > 0 ? asked : tbb::info::default_concurrency(), most);
+}
+
+/// Runs `work`, with everything that it does in parallel, on threads_for(asked) threads.
+template <class Work>
+auto with_threads(int asked, const Work& work) {
+  return tbb::task_arena(threads_for(asked)).execute(work);
 }
 
 }  // namespace tessera::scene

@@ -61,7 +61,8 @@ Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& sett
     : Renderer(source, settings, std::make_shared<const CellRanges>(std::move(ranges))) {}
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings)
-    : Renderer(source, settings, std::make_shared<const CellRanges>(source, settings.threads)) {}
+    : Renderer(source, settings,
+               scene::with_threads(settings.threads, [&] { return std::make_shared<const CellRanges>(source); })) {}
 
 Renderer::~Renderer() = default;
 

@@ -27,7 +27,8 @@ constexpr std::uint64_t least_samples = 8, most_samples = std::uint64_t{1} << 26
 Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dataset::State& whole, int threads) {
   auto state = std::make_shared<Dataset::State>();
   state->samples = std::move(samples);
-  state->ranges = std::make_shared<const volume::CellRanges>(*state->samples, threads);
+  state->ranges =
+      scene::with_threads(threads, [&] { return std::make_shared<const volume::CellRanges>(*state->samples); });
   const scene::ValueRange& range = state->ranges->range;
   if (range.empty())
     throw scene::bad_input(whole.source + ": so few samples contain none of its data; ask for more, or use the data");

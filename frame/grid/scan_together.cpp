@@ -50,11 +50,11 @@ std::uint64_t place(const exchange::Message& message, volume::CellScan& whole) {
 
 }  // namespace
 
-volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source, int threads) {
+volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source) {
   const int ranks = transport.size(), self = transport.rank();
   const scene::GridIndex cells = volume::cells_along(source.geometry());
   const auto first_layer = [&](int rank) { return cells[2] * rank / ranks; };
-  volume::CellScan own = volume::scan_cells(source, first_layer(self), first_layer(self + 1), threads);
+  volume::CellScan own = volume::scan_cells(source, first_layer(self), first_layer(self + 1));
   if (ranks == 1) return {source.grid(), std::move(own)};
 
   // Sent from each rank to each: through rank 0, like small messages, its memory would hold all ranks' copies of all

@@ -13,6 +13,6 @@ namespace tessera::frame {
 ///
 /// Collective: the same volume on every rank, from each rank's own source. Throws the run's error, or this rank's (a
 /// source that cannot be read), which the caller passes to transport.fail().
-volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source, int threads);
+volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source);
 
 }  // namespace tessera::frame

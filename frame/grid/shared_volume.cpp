@@ -2,7 +2,6 @@
 #include "frame/grid/shared_volume.hpp"
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -100,11 +99,9 @@ io::VolumeFile description_in(MessageReader& reader) {
 class Leader {
  public:
   Leader(const io::InputFile& file, const ReadOptions& options, bool shares) {
-    tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
-      volume_ = io::open_unscanned_volume(file, options, shares);
-      // Some readers only return the whole volume.
-      if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
-    });
+    volume_ = io::open_unscanned_volume(file, options, shares);
+    // Some readers only return the whole volume.
+    if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
     if (shares && volume_.in_memory) volume_.source.reset();
   }
 
@@ -145,10 +142,7 @@ std::string note_on(const io::InputFile& file, const Place& place, std::size_t r
 
 /// Opens the file in one process, which may keep the samples in memory.
 io::VolumeFile open_alone(const io::InputFile& file, const ReadOptions& options) {
-  io::VolumeFile volume;
-  tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
-    volume = io::open_unscanned_volume(file, options);
-  });
+  io::VolumeFile volume = io::open_unscanned_volume(file, options);
   if (!volume.scratch) return volume;
   const system::ScratchFile& scratch = *volume.scratch;
   volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));

@@ -16,7 +16,7 @@ namespace tessera::frame {
 ///
 /// Every rank has the leader's description of the file; a note reports what was written where. Samples have the same
 /// bits as in one process. Collective. Throws this rank's error, which the caller passes to transport.fail(), or the
-/// run's error; no file remains in the directory. `options.threads` threads write bricks.
+/// run's error; no file remains in the directory.
 io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file,
                                   const ReadOptions& options);
 

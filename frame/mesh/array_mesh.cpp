@@ -153,7 +153,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const cell
     result.owner = arrays.owner;
     result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
     result.counts.points_read = mesh->positions.size();
-    if (!may_be_empty) result.counts.cells_duplicate = cells::count_duplicate_cells(*mesh, options.threads);
+    if (!may_be_empty) result.counts.cells_duplicate = cells::count_duplicate_cells(*mesh);
     return result;
   }
   std::vector<cells::CellBlock> blocks;

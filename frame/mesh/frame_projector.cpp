@@ -34,7 +34,7 @@ struct FrameProjector::Culled {
 namespace {
 
 std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh, const Settings& settings) {
-  return tbb::task_arena(scene::threads_for(settings.threads)).execute([&] {
+  return scene::with_threads(settings.threads, [&] {
     const scene::TraceScope timing(settings.trace, "prepare");
     return std::make_shared<const projection::PreparedMesh>(mesh);
   });
@@ -282,13 +282,9 @@ FrameStatistics count(const FrameTask& frame, const TeamTask& team, const projec
 
 }  // namespace
 
-void order_corners(scene::TetMesh& mesh, int threads, scene::Trace* trace) {
-  const scene::TraceScope timing(trace, "prepare");
-  tbb::task_arena(scene::threads_for(threads)).execute([&] { projection::order_corners(mesh); });
-}
-
 FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const Settings& settings)
-    : FrameProjector(prepared(mesh, settings), scene::bounds(mesh, settings.threads), settings) {}
+    : FrameProjector(prepared(mesh, settings),
+                     scene::with_threads(settings.threads, [&] { return scene::bounds(mesh); }), settings) {}
 
 FrameProjector::FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box,
                                const Settings& settings)

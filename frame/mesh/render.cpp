@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/render.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -25,7 +23,10 @@ const char* surface_word(const Surfaces& surfaces) { return surfaces.has_faces()
 
 struct Renderer::State {
   State(const scene::TetMeshView& mesh, const Settings& s)
-      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)), normals(mesh) {
+      : settings(s),
+        projector(mesh, s),
+        scalar_range(scene::with_threads(s.threads, [&] { return scene::scalar_range(mesh); })),
+        normals(mesh) {
     find_boundary(mesh);
   }
   State(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts, const Settings& s)
@@ -36,7 +37,7 @@ struct Renderer::State {
   void find_boundary(const scene::TetMeshView& mesh) {
     if (settings.surfaces.boundary.empty()) return;
     const scene::TraceScope timing(settings.trace, "prepare");
-    boundary = tbb::task_arena(scene::threads_for(settings.threads)).execute([&] { return boundary_faces(mesh); });
+    boundary = scene::with_threads(settings.threads, [&] { return boundary_faces(mesh); });
   }
 
   /// The integrator of this function. Its tables are kept until the function changes.

@@ -29,10 +29,6 @@ struct FrameStatistics : scene::FrameCounters {
   std::string composited_on;    ///< CompositingDevice::name, of all compositors; empty in a single process
 };
 
-/// projection::order_corners() on `threads` threads, 0: all cores. For a mesh ordered this way a renderer keeps no copy
-/// of the tets, 16 bytes each. Images are the same with and without.
-void order_corners(scene::TetMesh& mesh, int threads, scene::Trace* trace = nullptr);
-
 /// Renders one tetrahedral mesh many times in one process, with settings that are valid for meshes (tessera::validate);
 /// iso-surfaces need point data. Only the rasterizer, integrator, emission, surfaces, shading and Settings::use change
 /// any bit of the image. The constructor does the preparation that does not depend on view or transfer function; the

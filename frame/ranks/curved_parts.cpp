@@ -68,7 +68,7 @@ ArrayMesh mesh_of_part(const MeshArrays& part, exchange::Transport& transport) {
                                   });
   std::vector<int> ranks(static_cast<std::size_t>(transport.size()));
   std::iota(ranks.begin(), ranks.end(), 0);
-  mesh.counts.cells_duplicate = count_shared_repetitions(transport, cells::duplicate_keys(mesh.mesh, 0), ranks, 0);
+  mesh.counts.cells_duplicate = count_shared_repetitions(transport, cells::duplicate_keys(mesh.mesh), ranks);
   const Became own{mesh.counts, mesh.higher_order};
   mesh.counts = {}, mesh.higher_order = {};
   for (const Became& other : exchange::gather_values(transport, MessageKind::curved_part, own)) {

@@ -19,6 +19,7 @@
 #include "scene/error.hpp"
 #include "scene/error_budget.hpp"
 #include "scene/start_thread.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::frame {
 
@@ -49,7 +50,8 @@ void LoadedMesh::load(std::size_t number) {
   if (team_ != nullptr) share_mesh();
   if (!settings_.surfaces.boundary.empty()) boundary_ = boundary_faces(mesh_.part, transport_);
   if (mesh_.prepared != nullptr)
-    projector_.emplace(mesh_.prepared, scene::bounds(mesh_.part, settings_.threads), settings_);
+    projector_.emplace(mesh_.prepared,
+                       scene::with_threads(settings_.threads, [&] { return scene::bounds(mesh_.part); }), settings_);
   else
     projector_.emplace(mesh_.part, settings_);
   number_ = number;

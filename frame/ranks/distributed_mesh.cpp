@@ -15,6 +15,7 @@
 #include "frame/ranks/reduce.hpp"
 #include "frame/ranks/shared_repetitions.hpp"
 #include "io/mesh/mesh_parts.hpp"
+#include "projection/prepared_mesh.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -115,7 +116,7 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOp
                                               const std::string& source, scene::TetMesh& part, MeshCounts& counts) {
   if (options.selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
-  all->facts = agree_facts(transport, part, options.threads);
+  all->facts = agree_facts(transport, part);
   // Sampling depends on the order of corners, so use the renderers' order: the samples are then those of the whole
   // mesh.
   std::vector<scene::Tet> as_read = part.tets;
@@ -127,7 +128,7 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOp
     for (double& value : part.scalars)  // samples avoid fill values
       if (std::ranges::binary_search(fill->values, value)) value = std::numeric_limits<double>::quiet_NaN();
   }
-  order_corners(part, options.threads);
+  projection::order_corners(part);
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
   if (!values.empty()) part.scalars = std::move(values);
@@ -186,7 +187,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   reading.reset();
   if (reads)  // the channel is free: all gathered the summaries before
     own.summary.counts.cells_duplicate =
-        count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, options.threads);
+        count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors);
 
   DistributedMesh result;
   result.of_all = select_part(transport, options, input.name, own.mesh, own.summary.counts);
@@ -245,7 +246,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     result.description.mesh = {};
     result.description.mesh.field_name = result.part.mesh.field_name;
     result.description.mesh.association = result.part.mesh.association;
-    result.facts = scene::facts_of(result.part.mesh, options.threads);
+    result.facts = scene::facts_of(result.part.mesh);
     return result;
   }
   try {
@@ -259,7 +260,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       result = in_parts != 0 ? read_parts(transport, first, options, projectors)
                              : read_whole(transport, files, first, options, projectors);
     }
-    result.facts = agree_facts(transport, result.part.mesh, options.threads);
+    result.facts = agree_facts(transport, result.part.mesh);
     result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
   } catch (const scene::Error& error) {
     transport.fail(error);

@@ -86,15 +86,13 @@ std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& l
 
 }  // namespace
 
-scene::MeshFacts agree_facts(Transport& transport, const scene::TetMeshView& part, int threads) {
-  if (transport.size() == 1) return scene::facts_of(part, threads);
-  scene::MeshFacts own{scene::bounds(part, threads), scene::scalar_range(part, threads), 0, part.tets.size(),
-                       part.association},
-      facts;
+scene::MeshFacts agree_facts(Transport& transport, const scene::TetMeshView& part) {
+  if (transport.size() == 1) return scene::facts_of(part);
+  scene::MeshFacts own{scene::bounds(part), scene::scalar_range(part), 0, part.tets.size(), part.association}, facts;
   int from = 0;
   for (const Bytes& other : gather_all(transport, message_of(own))) facts = joined(facts, facts_in(other, from++));
   scene::VolumeSum volume = 0;
-  for (const auto other : gather_values(transport, MessageKind::mesh_volume, volume_sum(part, facts.box, threads)))
+  for (const auto other : gather_values(transport, MessageKind::mesh_volume, volume_sum(part, facts.box)))
     volume += other;
   facts.mean_thickness = scene::mean_thickness(facts.box, volume);
   return facts;

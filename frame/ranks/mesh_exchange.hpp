@@ -26,8 +26,8 @@ struct MeshPart {
 };
 
 /// Facts of the whole mesh, with the same bits on every rank, for any distribution, and in one process
-/// (scene::facts_of). Collective. `threads` per rank; 0: all cores.
-scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMeshView& part, int threads = 1);
+/// (scene::facts_of). Collective.
+scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMeshView& part);
 
 /// Indices of this rank's tets in the whole mesh, which consists of all ranks' tets, rank after rank. Collective.
 std::vector<std::uint64_t> numbered_by_rank(exchange::Transport& transport, std::size_t tets);

@@ -11,7 +11,7 @@
 namespace tessera::frame {
 
 std::uint64_t count_shared_repetitions(exchange::Transport& transport, std::vector<std::uint64_t> keys,
-                                       std::span<const int> projectors, int threads) {
+                                       std::span<const int> projectors) {
   constexpr std::size_t keys_a_message = std::size_t{1} << 21;
   constexpr int low_bits = 32;
   const std::size_t parts = projectors.size();
@@ -42,7 +42,7 @@ std::uint64_t count_shared_repetitions(exchange::Transport& transport, std::vect
     reader.take_onto(own, reader.take<std::uint64_t>());
     reader.finish();
   }
-  return cells::count_repetitions(own, threads);
+  return cells::count_repetitions(own);
 }
 
 }  // namespace tessera::frame

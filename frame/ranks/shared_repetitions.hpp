@@ -13,6 +13,6 @@ namespace tessera::frame {
 /// determine its projector, so that each key is counted by one. Collective over the projectors; returns when all keys
 /// have been received.
 std::uint64_t count_shared_repetitions(exchange::Transport& transport, std::vector<std::uint64_t> keys,
-                                       std::span<const int> projectors, int threads);
+                                       std::span<const int> projectors);
 
 }  // namespace tessera::frame

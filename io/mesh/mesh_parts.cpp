@@ -152,8 +152,7 @@ MeshFilePart MeshPartReading::finish(const cells::ExcessTally& excess_of_all) {
     part.choice_notes = state_->choice.notes;
     cells::AssembledBlocks assembled =
         cells::assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
-                               cells::planned(state_->options, state_->asked, excess_of_all), state_->options.threads,
-                               cells::Duplicates::keys);
+                               cells::planned(state_->options, state_->asked, excess_of_all), cells::Duplicates::keys);
     part.mesh = std::move(assembled.mesh);
     part.cell_keys = std::move(assembled.cell_keys);
     part.summary.counts = assembled.counts;

@@ -12,6 +12,7 @@
 
 #include "cells/mesh_assembly.hpp"
 #include "io/mesh/mesh_parts.hpp"
+#include "scene/threads.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
@@ -65,7 +66,7 @@ TEST(DuplicateCells, AMeshWithoutDuplicatesHasNone) {
   for (const bool own_points : {false, true}) {
     scene::TetMesh mesh = mixed_tets(own_points);
     const std::size_t tets = mesh.tets.size();
-    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 2), 0u);
+    EXPECT_EQ(cells::find_duplicate_cells(mesh, true), 0u);
     EXPECT_EQ(mesh.tets.size(), tets);
   }
 }
@@ -81,12 +82,12 @@ TEST(DuplicateCells, AreFoundByTheirCornersAndDropped) {
     scene::TetMesh mesh = with_copies(once, some, 3);
     const std::size_t tets = mesh.tets.size();
     EXPECT_GT(tets, once.tets.size());
-    EXPECT_EQ(cells::find_duplicate_cells(mesh, false, threads), expected);
+    EXPECT_EQ(scene::with_threads(threads, [&] { return cells::find_duplicate_cells(mesh, false); }), expected);
     EXPECT_EQ(mesh.tets.size(), tets);
-    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, threads), expected);
+    EXPECT_EQ(scene::with_threads(threads, [&] { return cells::find_duplicate_cells(mesh, true); }), expected);
     EXPECT_EQ(mesh.tets, once.tets) << "the first of equal cells stay";
     EXPECT_EQ(mesh.original_cell, once.original_cell);
-    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, threads), 0u);
+    EXPECT_EQ(scene::with_threads(threads, [&] { return cells::find_duplicate_cells(mesh, true); }), 0u);
   }
 }
 
@@ -97,7 +98,7 @@ TEST(DuplicateCells, ATetInsideAnotherCellIsNotADuplicate) {
   while (mesh.cell_of(split) != mesh.cell_of(split + 1)) ++split;
   mesh.tets.push_back(mesh.tets[split]);
   mesh.original_cell.push_back(mesh.original_cell.back() + 1);
-  EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 1), 0u);
+  EXPECT_EQ(cells::find_duplicate_cells(mesh, true), 0u);
 }
 
 TEST(DuplicateCells, ManyCopiesOfOneLeaveOne) {
@@ -108,7 +109,7 @@ TEST(DuplicateCells, ManyCopiesOfOneLeaveOne) {
     mesh.scalars.push_back(k);
   }
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 2), 99999u);
+  EXPECT_EQ(cells::find_duplicate_cells(mesh, true), 99999u);
   ASSERT_EQ(mesh.tets.size(), 1u);
   EXPECT_EQ(mesh.scalars, std::vector<double>{0});
   EXPECT_EQ(mesh.original_cell, std::vector<std::uint64_t>{0});
@@ -189,7 +190,6 @@ TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
   ASSERT_GT(once.mesh.tets.size(), 65536u);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
   ReadOptions options;
-  options.threads = 3;
   EXPECT_EQ(assembled(options, true).counts.cells_duplicate, 3u);
   options.drop_duplicates = true;
   const cells::MeshFile dropped = assembled(options, true);
@@ -205,16 +205,16 @@ TEST_F(DuplicateFiles, KeysOfPartsGiveTheCountOfTheWhole) {
   const auto first = static_cast<std::ptrdiff_t>(once.tets.size());
   copies.tets.erase(copies.tets.begin(), copies.tets.begin() + first);
   copies.original_cell.erase(copies.original_cell.begin(), copies.original_cell.begin() + first);
-  std::vector<std::uint64_t> keys = cells::duplicate_keys(once, 2);
-  EXPECT_EQ(cells::count_repetitions(keys, 2), 0u);
-  const std::vector<std::uint64_t> others = cells::duplicate_keys(copies, 1);
+  std::vector<std::uint64_t> keys = cells::duplicate_keys(once);
+  EXPECT_EQ(cells::count_repetitions(keys), 0u);
+  const std::vector<std::uint64_t> others = cells::duplicate_keys(copies);
   scene::TetMesh counted = twice;
-  const std::uint64_t expected = cells::find_duplicate_cells(counted, false, 2);
+  const std::uint64_t expected = cells::find_duplicate_cells(counted, false);
   EXPECT_EQ(others.size(), expected);
   keys.insert(keys.end(), others.begin(), others.end());
-  EXPECT_EQ(cells::count_repetitions(keys, 2), expected);
+  EXPECT_EQ(cells::count_repetitions(keys), expected);
   keys.insert(keys.end(), others.begin(), others.end());
-  EXPECT_EQ(cells::count_repetitions(keys, 3), 2 * expected);
+  EXPECT_EQ(cells::count_repetitions(keys), 2 * expected);
 }
 
 TEST_F(DuplicateFiles, ABlankCopyIsNeitherDrawnNorADuplicate) {

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "scene/threads.hpp"
 #include "support/mesh_checks.hpp"
 
 namespace tessera::io {
@@ -213,10 +214,10 @@ cells::CellBlock many_cells(std::size_t n) {
 
 TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
   constexpr std::size_t n = 150'001;
-  ReadOptions options;
-  const auto assemble_with = [&](int threads) {
-    options.threads = threads;
-    return cells::assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, options, "mesh");
+  const auto assemble_with = [](int threads) {
+    return scene::with_threads(threads, [] {
+      return cells::assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, {}, "mesh");
+    });
   };
   const cells::MeshFile one = assemble_with(1);
   std::size_t tets = 0, t = 0;
@@ -246,7 +247,7 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
   for (const char* field : {"p", "c"})
     for (const int threads : {1, 2}) {
       ReadOptions options;
-      options.field = field, options.threads = threads;
+      options.field = field;
       for (const std::size_t dropped : {n, std::size_t{0}, std::size_t{20'000}, n - 1}) {
         cells::CellBlock some = row_of_tets(n);
         some.cell_ghost.assign(n, 0);
@@ -256,8 +257,10 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
             return before > 0 ? std::vector<cells::CellBlock>{row_of_tets(before), block, row_of_tets(2)}
                               : std::vector<cells::CellBlock>{block};
           };
-          const cells::MeshFile tets = cells::assemble_mesh(blocks(some), options, "mesh");
-          const cells::MeshFile cells = cells::assemble_mesh(blocks(with_types(some)), options, "mesh");
+          const auto assembled = [&](const cells::CellBlock& block) {
+            return scene::with_threads(threads, [&] { return cells::assemble_mesh(blocks(block), options, "mesh"); });
+          };
+          const cells::MeshFile tets = assembled(some), cells = assembled(with_types(some));
           scene::validate(tets.mesh, "mesh");
           EXPECT_EQ(tets.mesh.tets.size(), n - (dropped < n ? 1 : 0) + (before > 0 ? before + 2 : 0));
           EXPECT_EQ(tets.mesh.tets, cells.mesh.tets);
@@ -272,10 +275,11 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
 TEST(MeshAssembly, ReportsTheFirstBadCellWhicheverThreadFindsIt) {
   cells::CellBlock block = many_cells(200'000);
   for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
-  ReadOptions options;
-  for (options.threads = 0; options.threads < 3; ++options.threads)
-    EXPECT_NE(message_of([&] { cells::assemble_mesh({block}, options, "mesh"); }).find("cell 90000 is a polyhedron"),
-              std::string::npos);
+  for (int threads = 0; threads < 3; ++threads)
+    scene::with_threads(threads, [&] {
+      EXPECT_NE(message_of([&] { cells::assemble_mesh({block}, {}, "mesh"); }).find("cell 90000 is a polyhedron"),
+                std::string::npos);
+    });
 }
 
 TEST(MeshAssembly, MinusZeroAndZeroAreTheSamePosition) {

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "cells/mesh_assembly.hpp"
+#include "scene/threads.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/polyhedral_meshes.hpp"
 
@@ -28,8 +29,10 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
 
 cells::MeshFile assembled(const cells::CellBlock& block, const std::string& field = "f", int threads = 0) {
   ReadOptions options;
-  options.field = field, options.threads = threads;
-  cells::MeshFile file = cells::assemble_mesh({block, block}, options, "mesh");
+  options.field = field;
+  cells::MeshFile file = scene::with_threads(threads, [&] {
+    return cells::assemble_mesh({block, block}, options, "mesh");
+  });
   file.counts.cells_duplicate = 0;  // the second block is on top of the first, which does not matter here
   return file;
 }

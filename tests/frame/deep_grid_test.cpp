@@ -109,7 +109,7 @@ TEST(DeepGrid, SurfacesAreSamplesWithoutLength) {
   iso.iso = {{0.4, glm::dvec3(1, 0.3, 0), 0.35}, {0.7, {}, 1}};
   for (const bool rectilinear : {false, true}) {
     const auto source = noise(scene::Association::point, rectilinear);
-    const volume::GridSurfaces surfaces(iso, smooth, volume::CellRanges(*source, 2));
+    const volume::GridSurfaces surfaces(iso, smooth, volume::CellRanges(*source));
     for (const scene::Camera& camera : views(*source)) {
       frame::DeepSettings settings;
       settings.surfaces_of_grid = &surfaces;

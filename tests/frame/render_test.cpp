@@ -12,6 +12,7 @@
 #include "datasets/kuhn.hpp"
 #include "frame/leaning_stack.hpp"
 #include "projection/lattice/lattice_rasterizer.hpp"
+#include "projection/prepared_mesh.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/some_cases.hpp"
@@ -51,7 +52,7 @@ bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.de
 TEST(Render, GivesTheSameBitsWithCornersOrderedBeforehand) {
   const scene::TetMesh mesh = datasets::cube(12, 0.2);
   scene::TetMesh ordered = mesh;
-  order_corners(ordered, 1);
+  projection::order_corners(ordered);
   ASSERT_NE(ordered.tets, mesh.tets);
   const ImageSize size{97, 61};
   EXPECT_TRUE(same_bits(Renderer(ordered, exact()).render(oblique(), size, six_knots()),

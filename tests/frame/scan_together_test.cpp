@@ -47,7 +47,7 @@ class NoiseSource final : public scene::SampleSource {
 
 TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
   const NoiseSource alone;
-  const volume::CellRanges expected(alone, 1);
+  const volume::CellRanges expected(alone);
   const std::int64_t layer = 30 * 12;  // samples
   for (const int ranks : {1, 2, 3, 6, 9}) {
     std::mutex mutex;
@@ -56,7 +56,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
       // Twice in a row, as for a series whose second step is requested: the two must not mix.
       for (int time = 0; time < 2; ++time) {
         const NoiseSource source;
-        const volume::CellRanges ranges = scan_together(transport, source, 1);
+        const volume::CellRanges ranges = scan_together(transport, source);
         const std::lock_guard lock(mutex);
         ++done;
         EXPECT_EQ(ranges.cells, expected.cells);
@@ -78,7 +78,7 @@ TEST(ScanTogether, AReadErrorOfOneRankEndsTheRunForAllWithItsMessage) {
   try {
     exchange::run_ranks(3, [&](exchange::Transport& transport) {
       const NoiseSource source(40);  // in the last rank's share
-      scan_together(transport, source, 1);
+      scan_together(transport, source);
       ADD_FAILURE() << "rank " << transport.rank() << " went on";
     });
     FAIL() << "no error";

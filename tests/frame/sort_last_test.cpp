@@ -124,7 +124,7 @@ Case random_case(Random& random) {
 
 std::optional<FinishedVolumeFrame> render(const Case& c, scene::ImageSize size) {
   std::optional<FinishedVolumeFrame> finished;
-  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source);
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     volume::RenderSettings render = c.render;
     render.parts = c.ranks;
@@ -202,7 +202,7 @@ class PartOfVolume final : public scene::SampleSource {
 
 TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
   const Case c = ball(4);
-  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source);
   const volume::ObjectSplit split = volume::Renderer(*c.source, c.render, ranges).object_split(c.function(), c.ranks);
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     const PartOfVolume part(*c.source, split.boxes()[static_cast<std::size_t>(transport.rank())]);
@@ -235,7 +235,7 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   constexpr scene::ImageSize size{60, 50};
   std::vector<int> reported(60 * 50, 0);
   std::vector<float> alpha(60 * 50, -1);
-  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source);
   std::optional<FinishedVolumeFrame> finished;
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     volume::Renderer renderer(*c.source, c.render, ranges);
@@ -288,7 +288,7 @@ TEST(SortLast, TheSameJobGivesTheSameBitsWithEitherExchange) {
 TEST(SortLast, AStopOnAnyRankEndsThePictureOnAllAndTheNextIsWhole) {
   const Case c = ball(3);
   constexpr scene::ImageSize size{300, 240};
-  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*c.source);
   std::optional<FinishedVolumeFrame> stopped, whole;
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     volume::Renderer renderer(*c.source, c.render, ranges);

@@ -51,7 +51,7 @@ std::unique_ptr<VolumeFrames> frames_of(SortMode mode, exchange::Transport& tran
 /// Calls `work` on every rank with its renderer, its frames and the list.
 void on_ranks(SortMode mode, int ranks, const scene::SampleSource& source,
               const std::function<void(exchange::Transport&, volume::Renderer&, VolumeFrames&)>& work) {
-  const auto ranges = std::make_shared<const volume::CellRanges>(source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(source);
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
     volume::RenderSettings settings;
     settings.threads = 1;
@@ -196,7 +196,7 @@ class Failing final : public scene::SampleSource {
 TEST_P(VolumeLists, AFaultOnAnyRankEndsTheRunOnAll) {
   const auto source = waves();
   const std::vector<VolumeJob> jobs = turn();
-  const auto ranges = std::make_shared<const volume::CellRanges>(*source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*source);
   for (const int faulty : {0, 1, 2}) {
     std::atomic<int> failed = 0;
     const auto run = [&](exchange::Transport& transport) {

@@ -60,7 +60,7 @@ inline InParts read_in_parts(const std::filesystem::path& file, int parts, const
     summaries.push_back(result.parts.back().summary);
     keys.insert(keys.end(), result.parts.back().cell_keys.begin(), result.parts.back().cell_keys.end());
   }
-  summaries.front().counts.cells_duplicate = cells::count_repetitions(keys, 2);
+  summaries.front().counts.cells_duplicate = cells::count_repetitions(keys);
   result.whole = io::joined(result.parts.back(), summaries, file);
   return result;
 }

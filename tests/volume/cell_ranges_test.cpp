@@ -29,7 +29,7 @@ std::unique_ptr<scene::MemorySource> noise(scene::Association association, doubl
 TEST(CellRanges, AreThoseOfEachCellsSamples) {
   for (const auto association : {scene::Association::point, scene::Association::cell}) {
     const auto source = noise(association, -3);
-    const CellRanges ranges(*source, 2);
+    const CellRanges ranges(*source);
     EXPECT_EQ(ranges.range, scene::value_range(*source));
     const scene::GridIndex samples = source->geometry().samples();
     const std::int64_t shared = association == scene::Association::point ? 1 : 0;
@@ -62,10 +62,10 @@ TEST(CellRanges, PartsOfAScanAddUpToTheWholeWhereverItIsCut) {
   for (const auto association : {scene::Association::point, scene::Association::cell}) {
     const auto source = noise(association, 2);
     const std::int64_t layers = cells_along(source->geometry())[2];
-    const CellScan whole = scan_cells(*source, 0, layers, 1);
+    const CellScan whole = scan_cells(*source, 0, layers);
     for (std::int64_t cut = 0; cut <= layers; ++cut) {
-      CellScan both = scan_cells(*source, 0, cut, 1);
-      const CellScan rest = scan_cells(*source, cut, layers, 2);
+      CellScan both = scan_cells(*source, 0, cut);
+      const CellScan rest = scan_cells(*source, cut, layers);
       both.low.insert(both.low.end(), rest.low.begin(), rest.low.end());
       both.high.insert(both.high.end(), rest.high.begin(), rest.high.end());
       EXPECT_EQ(both.low, whole.low) << cut;

@@ -387,7 +387,7 @@ TEST(ChunkCast, AChunkReadsItsOwnBricksAlone) {
   const Volume v = make_volume({49, 49, 49}, Field::noise);
   volume::RenderSettings settings = with(IntegratorKind::exact);
   settings.grid.brick_size = 16;
-  const auto ranges = std::make_shared<const volume::CellRanges>(*v.source, 1);
+  const auto ranges = std::make_shared<const volume::CellRanges>(*v.source);
   for (const char* name : {"oblique", "from -x", "inside"})
     for (const VoxelBox& chunk : boxes_front_to_back(v.grid.geometry, {16, 16, 32}, view(name))) {
       // A brick shares its border samples with its neighbours.

@@ -3,7 +3,6 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +10,6 @@
 #include <limits>
 #include <mutex>
 #include <utility>
-
-#include "scene/threads.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -110,7 +107,7 @@ scene::GridIndex cells_along(const scene::GridGeometry& geometry) {
   return cells;
 }
 
-CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last, int threads) {
+CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last) {
   const scene::GridIndex voxels = source.geometry().voxels(), cells = cells_along(source.geometry());
   CellScan scan;
   scan.first = first, scan.last = last;
@@ -121,25 +118,22 @@ CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::
   const scene::GridIndex blocks{(voxels[0] + size[0] - 1) / size[0], (voxels[1] + size[1] - 1) / size[1],
                                 (last - first + layers - 1) / layers};
   std::mutex mutex;
-  tbb::task_arena arena(scene::threads_for(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
-      const scene::GridIndex first_voxel{n % blocks[0] * size[0], n / blocks[0] % blocks[1] * size[1],
-                                         n / blocks[0] / blocks[1] * size[2] + first * CellRanges::side};
-      const BlockTotals totals = scene::fits_float(source.grid().type)
-                                     ? scan_block<float>(source, first_voxel, size, scan)
-                                     : scan_block<double>(source, first_voxel, size, scan);
-      const std::lock_guard lock(mutex);
-      scan.lowest = std::min(scan.lowest, totals.lowest);
-      scan.highest = std::max(scan.highest, totals.highest);
-      scan.blanks += totals.blanks;
-    });
+  tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
+    const scene::GridIndex first_voxel{n % blocks[0] * size[0], n / blocks[0] % blocks[1] * size[1],
+                                       n / blocks[0] / blocks[1] * size[2] + first * CellRanges::side};
+    const BlockTotals totals = scene::fits_float(source.grid().type)
+                                   ? scan_block<float>(source, first_voxel, size, scan)
+                                   : scan_block<double>(source, first_voxel, size, scan);
+    const std::lock_guard lock(mutex);
+    scan.lowest = std::min(scan.lowest, totals.lowest);
+    scan.highest = std::max(scan.highest, totals.highest);
+    scan.blanks += totals.blanks;
   });
   return scan;
 }
 
-CellRanges::CellRanges(const scene::SampleSource& source, int threads)
-    : CellRanges(source.grid(), scan_cells(source, 0, cells_along(source.geometry())[2], threads)) {}
+CellRanges::CellRanges(const scene::SampleSource& source)
+    : CellRanges(source.grid(), scan_cells(source, 0, cells_along(source.geometry())[2])) {}
 
 CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
     : cells(cells_along(grid.geometry)), low(std::move(whole.low)), high(std::move(whole.high)) {

@@ -29,7 +29,7 @@ scene::GridIndex cells_along(const scene::GridGeometry& geometry);
 
 /// Reads the samples of layers first <= c < last once, in boxes of about 64^3 voxels and the samples that these share
 /// with others: cubes, or whole rows if the source is stored slice by slice.
-CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last, int threads);
+CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last);
 
 /// Smallest and largest lane scalar in every cell of 8^3 voxels, for skipping empty space with any brick size.
 ///
@@ -42,7 +42,7 @@ struct CellRanges {
   /// From a scan of all layers. `lanes` follows from the range of the whole volume.
   CellRanges(const scene::Grid& grid, CellScan whole);
   /// Reads all samples.
-  CellRanges(const scene::SampleSource& source, int threads);
+  explicit CellRanges(const scene::SampleSource& source);
 
   [[nodiscard]] std::size_t count() const { return low.size(); }
   scene::GridIndex cells{0, 0, 0};
