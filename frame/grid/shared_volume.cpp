@@ -15,7 +15,6 @@
 #include "frame/ranks/field_message.hpp"
 #include "io/volume/brick_file.hpp"
 #include "scene/error.hpp"
-#include "scene/threads.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -50,7 +49,9 @@ struct Place {
 /// Text path, text `folder`, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
 /// texts modality, unit and unit of length, u8 labels, a time step, u8 whether x and y are degrees. Empty from a rank
 /// that has not read the file.
-Bytes message_of(const io::VolumeFile& volume, const Place& place) {
+Bytes message_of(const io::VolumeFile& volume) {
+  Place place;
+  if (volume.scratch) place = {volume.scratch->path(), volume.scratch->folder(), volume.scratch->bytes()};
   Bytes message = exchange::begin_message(MessageKind::volume_facts);
   append_text(message, place.path);
   append_text(message, place.folder);
@@ -95,32 +96,7 @@ io::VolumeFile description_in(MessageReader& reader) {
   return volume;
 }
 
-/// What a leader has read, and where the other ranks of its machine find it.
-class Leader {
- public:
-  Leader(const io::InputFile& file, const ReadOptions& options, bool shares) {
-    volume_ = io::open_unscanned_volume(file, options, shares);
-    // Some readers only return the whole volume.
-    if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
-    if (shares && volume_.in_memory) volume_.source.reset();
-  }
-
-  [[nodiscard]] Bytes message() const {
-    const system::ScratchFile* const written = volume_.scratch.get();
-    if (written == nullptr) return message_of(volume_, {});
-    return message_of(volume_, {written->path(), written->folder(), written->bytes()});
-  }
-  [[nodiscard]] bool in_memory() const { return volume_.in_memory && !volume_.scratch; }
-  /// Null once they have been written.
-  std::unique_ptr<scene::SampleSource> take_samples() { return std::move(volume_.source); }
-
- private:
-  io::VolumeFile volume_;
-};
-
-std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const io::InputFile& file,
-                                                const ReadOptions& options, bool shares) {
-  if (place.path.empty()) return io::open_unscanned_volume(file, options, shares).source;
+std::unique_ptr<scene::SampleSource> bricks_at(const Place& place, const io::InputFile& file) {
   try {
     return io::open_bricks(place.path, {}, file.name).source;
   } catch (const scene::Error&) {
@@ -140,28 +116,23 @@ std::string note_on(const io::InputFile& file, const Place& place, std::size_t r
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }
 
-/// Opens the file in one process, which may keep the samples in memory.
-io::VolumeFile open_alone(const io::InputFile& file, const ReadOptions& options) {
-  io::VolumeFile volume = io::open_unscanned_volume(file, options);
-  if (!volume.scratch) return volume;
-  const system::ScratchFile& scratch = *volume.scratch;
-  volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));
-  return volume;
-}
-
 }  // namespace
 
 io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file,
                                   const ReadOptions& options) {
-  if (transport.size() == 1) return open_alone(file, options);
   const std::vector<std::size_t> leader_of = leaders(transport);
   const auto self = static_cast<std::size_t>(transport.rank());
   const auto ranks_of = [&](std::size_t leader) { return std::ranges::count(leader_of, leader); };
-  const bool shares = ranks_of(leader_of[self]) > 1;
-  std::optional<Leader> own;
-  if (leader_of[self] == self) own.emplace(file, options, shares);
+  const bool leads = leader_of[self] == self, shares = ranks_of(leader_of[self]) > 1;
+  const auto open = [&] { return io::open_unscanned_volume(file, options, shares); };
+  io::VolumeFile own;
+  if (leads) own = open();
+  if (leads && shares && own.in_memory) {  // some readers only return the whole volume
+    own.scratch = io::scratch_bricks(*own.source, file.name);
+    own.source.reset();
+  }
   const std::vector<Bytes> all =
-      exchange::gather_all(transport, own ? own->message() : exchange::begin_message(MessageKind::volume_facts));
+      exchange::gather_all(transport, leads ? message_of(own) : exchange::begin_message(MessageKind::volume_facts));
 
   std::optional<Place> first;
   std::size_t sharing = 0, machines = 0;
@@ -176,9 +147,9 @@ io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::Inpu
     }
     if (rank != leader_of[self]) continue;
     volume = description_in(reader);
-    volume.in_memory = own && own->in_memory();
-    if (own) volume.source = own->take_samples();
-    if (!volume.source) volume.source = samples_at(place, file, options, shares);
+    volume.in_memory = leads && own.in_memory && !own.scratch;
+    volume.source = std::move(own.source);
+    if (!volume.source) volume.source = place.path.empty() ? open().source : bricks_at(place, file);
   }
   if (first) volume.notes.push_back(note_on(file, *first, sharing, machines));
   // The leader keeps its file open until all others have opened it through the leader's descriptor.
