@@ -20,9 +20,8 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   ReadOptions read = options;
   read.blocks = {block};
   read.selection = {};
-  std::vector<io::InputFile> identified;
-  for (const std::filesystem::path& file : files) identified.push_back(frame::identify_input(file));
-  io::BlockFaces faces = io::read_block_faces(identified, read);
+  io::BlockFaces faces =
+      io::read_block_faces(frame::identify_pieces(files, frame::identify_input(files.front())), read);
   if (!faces.has_volume) {
     if (faces.mesh.triangles.empty())
       throw scene::bad_input(fmt::format("{}: the block {} has neither faces nor cells; name another",

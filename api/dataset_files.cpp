@@ -34,24 +34,28 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
-  const auto refuse = [&](const char* setting) {
-    throw scene::bad_input(
-        fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
-  };
-  if (options.smooth) refuse("smooth");
-  if (options.warp) refuse("warp");
-  if (options.drop_duplicates) refuse("drop_duplicates");
-  if (options.max_volume) refuse("max_volume");
-  if (!options.blocks.empty()) refuse("block");
-  if (!options.plot3d_q.empty()) refuse("plot3d_q");
-}
-
-void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
-  if (options.describes_raw())
+/// Throws Error(bad_input) for options that are not for such a file.
+void check_options(const std::filesystem::path& file, const ReadOptions& options, bool is_grid) {
+  if (const auto& scale = options.axis_scale)
+    for (int axis = 0; axis < 3; ++axis)
+      if (!((*scale)[axis] > 0) || !std::isfinite((*scale)[axis]))
+        throw scene::bad_input(
+            fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
+  if (!is_grid && options.describes_raw())
     throw scene::bad_input(
         fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
                     file.string()));
+  const auto refuse = [&](bool is_given, const char* setting) {
+    if (is_grid && is_given)
+      throw scene::bad_input(
+          fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
+  };
+  refuse(options.smooth, "smooth");
+  refuse(options.warp.has_value(), "warp");
+  refuse(options.drop_duplicates, "drop_duplicates");
+  refuse(options.max_volume.has_value(), "max_volume");
+  refuse(!options.blocks.empty(), "block");
+  refuse(!options.plot3d_q.empty(), "plot3d_q");
 }
 
 /// Adds the same note on every rank.
@@ -69,21 +73,12 @@ void set_own_time(const io::InputFile& file, scene::TimeStepRead& read) {
   if (const auto time = io::vtk_time_value(file.path, file.beginning)) read = {1, 0, {*time}};
 }
 
-void check_axis_scale(const std::optional<glm::dvec3>& scale) {
-  if (!scale) return;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!((*scale)[axis] > 0) || !std::isfinite((*scale)[axis]))
-      throw scene::bad_input(
-          fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
-}
-
 std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const ReadOptions& options,
-                                            exchange::Transport& transport, scene::Trace* trace) {
+                                            exchange::Transport& transport) {
   const std::filesystem::path& file = input.path;
-  check_grid_options(file, options);
   auto state = std::make_shared<Dataset::State>();
   io::VolumeFile volume = [&] {
-    const scene::TraceScope timing(trace, "read");
+    const scene::TraceScope timing(options.trace, "read");
     return frame::open_shared_volume(transport, input, options);
   }();
   api::require_same_files(transport);  // the ones that `volume` names
@@ -92,18 +87,18 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
   if (state->axis_scale != glm::dvec3(1))
     volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
   {
-    const scene::TraceScope timing(trace, "prepare");
-    state->labels = api::take_labels(file, options, transport, volume);
+    const scene::TraceScope timing(options.trace, "prepare");
+    state->labels = api::take_labels(file, options.labels, transport, volume);
     state->ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source));
   }
-  api::note_byte_order(volume, options, state->ranges->range);
-  api::leave_fill_values_out(volume, file, options, transport, state->ranges);
+  api::note_byte_order(volume, options.big_endian, state->ranges->range);
+  api::leave_fill_values_out(volume, file, options.selection.threshold, transport, state->ranges);
   scene::ValueRange range = state->ranges->range;
   if (const auto& threshold = options.selection.threshold) {
     state->of_all = std::make_shared<const frame::FieldOfAll>(
         frame::FieldOfAll{api::facts_of_grid(volume.source->grid(), range), scene::sample_grid(*volume.source)});
     volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
-    const scene::TraceScope timing(trace, "prepare");
+    const scene::TraceScope timing(options.trace, "prepare");
     state->ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source));
     range = state->ranges->range;
     if (range.empty())
@@ -121,8 +116,9 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
   state->body_axes = volume.body_axes;
   state->tags = std::move(volume.tags);
   state->time_step = std::move(volume.time_step);
-  set_own_time(input, state->time_step);
   state->samples = std::move(volume.source);
+  api::complete_grid(*state);
+  if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, file.string());
   return state;
 }
 
@@ -137,18 +133,6 @@ void take_description(cells::MeshFile&& file, Dataset::State& state) {
   state.higher_order = file.higher_order;
   state.time_step = std::move(file.time_step);
   state.axis_scale = file.axis_scale;
-}
-
-/// Moves a mesh into the state, with its corners in the order that needs no copy unless the caller's order must be
-/// kept.
-void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
-  if (!options.keep_corners) {
-    const scene::TraceScope timing(trace, "prepare");
-    projection::order_corners(mesh);
-  }
-  auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
-  state.mesh = *kept;
-  state.owner = std::move(kept);
 }
 
 /// While it exists, spans of messages are recorded in the reader's trace.
@@ -173,50 +157,59 @@ class TracedMessages {
   std::optional<Trace> face_;
 };
 
+std::shared_ptr<Dataset::State> opened_mesh(std::span<const std::filesystem::path> files, const io::InputFile& first,
+                                            ReadOptions options, exchange::Transport& transport,
+                                            const RankSettings& ranks) {
+  auto state = std::make_shared<Dataset::State>();
+  TracedMessages traced(transport, options.trace);
+  options.trace = traced.face(options.trace);
+  const Roles roles = assign_roles(transport.size(), ranks.projectors, ranks.compositors);
+  frame::DistributedMesh mesh =
+      frame::read_distributed(transport, files, first, options, ranks.partition, roles.projectors);
+  api::require_same_files(transport);  // the ones that the mesh names
+  take_description(std::move(mesh.description), *state);
+  state->facts = mesh.facts;
+  state->of_all = std::move(mesh.of_all);
+  state->ranks = transport.size();
+  state->global_tet = std::move(mesh.part.global_tet);
+  if (!options.keep_corners) {
+    const scene::TraceScope timing(options.trace, "prepare");
+    projection::order_corners(mesh.part.mesh);
+  }
+  auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh.part.mesh));
+  state->mesh = *kept;
+  state->owner = std::move(kept);
+  if (!options.selection.threshold) note_fill_value(transport, *state);
+  state->shape = options.shape && state->field_name == shape_field_name;
+  state->gather_field_samples(transport);
+  return state;
+}
+
 /// `identified`: the file, if there is one and it has been identified.
 Dataset open_together(std::span<const std::filesystem::path> files, std::optional<InputFile> identified,
                       const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
   const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   const auto open = [&] {
-    std::shared_ptr<Dataset::State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
-    check_axis_scale(options.axis_scale);
     for (const auto& file : files) system::note_read(file);
     api::require_same_files(*transport);  // first: the collective calls below depend on the files
     if (!identified) identified.emplace(files.front());
     if (!StateAccess::of(*identified).is_there) throw system::missing_file(files.front());
     const io::InputFile& first = StateAccess::of(*identified).file;
-    if (files.size() == 1 && identified->opens_as_grid(options)) {
-      state = opened_grid(first, options, *transport, options.trace);
-      api::complete_grid(*state);
-      if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, files.front().string());
-    } else {
-      check_mesh_options(files.front(), options);
-      state = std::make_shared<Dataset::State>();
-      TracedMessages traced(*transport, options.trace);
-      Trace* const trace = traced.face(options.trace);
-      const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
-      frame::DistributedMesh mesh =
-          frame::read_distributed(*transport, files, first, options, ranks.partition, roles.projectors, trace);
-      api::require_same_files(*transport);  // the ones that the mesh names
-      take_description(std::move(mesh.description), *state);
-      set_own_time(first, state->time_step);
-      state->facts = mesh.facts;
-      state->of_all = std::move(mesh.of_all);
-      state->ranks = transport->size();
-      state->global_tet = std::move(mesh.part.global_tet);
-      keep(std::move(mesh.part.mesh), options, trace, *state);
-      if (!options.selection.threshold) note_fill_value(*transport, *state);
-      state->shape = options.shape && state->field_name == shape_field_name;
-      state->gather_field_samples(*transport);
-    }
+    const bool is_grid = files.size() == 1 && identified->opens_as_grid(options);
+    check_options(files.front(), options, is_grid);
+    const std::shared_ptr<Dataset::State> state =
+        is_grid ? opened_grid(first, options, *transport) : opened_mesh(files, first, options, *transport, ranks);
+    set_own_time(first, state->time_step);
+    if (auto note = scene::note_on(state->time_step, options.time_step))
+      state->notes.insert(state->notes.begin(), *std::move(note));
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
     state->options = options;
     state->clip = options.selection.clip;
     state->options.trace = nullptr;  // it may not live as long as the state
     state->options.progress = nullptr;
-    return StateAccess::make(std::move(state));
+    return StateAccess::make(state);
   };
   return scene::with_threads(options.threads, [&] { return api::together(*transport, open); });
 }

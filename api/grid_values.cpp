@@ -28,11 +28,11 @@ bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
 
 }  // namespace
 
-void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
-                           exchange::Transport& transport, std::shared_ptr<const volume::CellRanges>& ranges) {
+void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file,
+                           const std::optional<std::array<double, 2>>& threshold, exchange::Transport& transport,
+                           std::shared_ptr<const volume::CellRanges>& ranges) {
   std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, ranges->range);
   if (!fill) return;
-  const auto& threshold = options.selection.threshold;
   if (fill->is_huge()) {
     volume.notes.push_back(fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count,
                                        fmt::join(fill->values, " or ")));
@@ -48,19 +48,19 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
     volume.notes.push_back(scene::words_on(*fill, "samples"));
 }
 
-void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range) {
+void note_byte_order(io::VolumeFile& volume, bool big_endian, const scene::ValueRange& range) {
   const double most = std::max(std::abs(range.low), std::abs(range.high));
   if (volume.format != "raw samples" || !is_float(volume.source->grid().type) || range.empty() || most == 0 ||
       (most > 1e-30 && most < 1e30))
     return;
   volume.notes.push_back(fmt::format("its values are as those in the other order of bytes are: try `endian` {}",
-                                     options.big_endian ? "little" : "big"));
+                                     big_endian ? "little" : "big"));
 }
 
-std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
+std::vector<double> take_labels(const std::filesystem::path& file, std::optional<bool> asked,
                                 exchange::Transport& transport, io::VolumeFile& volume) {
-  if (options.labels == false) return {};
-  const bool stated = options.labels.value_or(false) || volume.tags.labels;
+  if (asked == false) return {};
+  const bool stated = asked.value_or(false) || volume.tags.labels;
   scene::LabelValues found = frame::shared_labels(transport, *volume.source, stated);
   if (!found.are_labels || (!stated && is_scan(volume, found.values))) return {};
   if (volume.source->geometry().association == Association::point) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "exchange/transport.hpp"
 #include "io/volume/volume_reader.hpp"
-#include "tessera/dataset.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
 /// Interpretation of a grid's values other than as quantities: fill values, labels, the wrong byte order. Functions
@@ -16,14 +17,16 @@ namespace tessera::api {
 
 /// Fill values would dominate the range and the colours, and hide what the volume is: huge ones become blank; for
 /// others a note explains how to leave them out.
-void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
-                           exchange::Transport& transport, std::shared_ptr<const volume::CellRanges>& ranges);
+void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file,
+                           const std::optional<std::array<double, 2>>& threshold, exchange::Transport& transport,
+                           std::shared_ptr<const volume::CellRanges>& ranges);
 
 /// Floats of a raw file in the wrong byte order are almost zero, or huge; a note suggests the other order.
-void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range);
+void note_byte_order(io::VolumeFile& volume, bool big_endian, const scene::ValueRange& range);
 
-/// Makes each sample fill its voxel if the values are labels, unless the options state otherwise. Returns the labels.
-std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
+/// Makes each sample fill its voxel if the values are labels, unless `asked` (ReadOptions::labels) states otherwise.
+/// Returns the labels.
+std::vector<double> take_labels(const std::filesystem::path& file, std::optional<bool> asked,
                                 exchange::Transport& transport, io::VolumeFile& volume);
 
 }  // namespace tessera::api

@@ -85,11 +85,11 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   if (data.uncut) return {data.uncut->mesh, data.clip, data.mesh, data.uncut};
   if (data.files.empty())
     throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
-  ReadOptions options = data.options;
-  options.selection.clip.clear();
-  const io::InputFile first = frame::identify_input(data.files.front());
-  auto whole = std::make_shared<const scene::TetMesh>(
-      scene::with_threads(options.threads, [&] { return frame::read_input(data.files, first, options).mesh; }));
+  const auto pieces = frame::identify_pieces(data.files, frame::identify_input(data.files.front()));
+  const ReadOptions& options = data.options;
+  cells::MeshFile file = scene::with_threads(options.threads, [&] { return io::read_mesh(pieces, options); });
+  cells::select(file.mesh, {{}, options.selection.threshold}, file.counts, data.source);
+  const auto whole = std::make_shared<const scene::TetMesh>(std::move(file.mesh));
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
 }
 

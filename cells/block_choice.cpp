@@ -41,14 +41,13 @@ void require_blocks(const BlockChoice& choice, std::span<const std::string> bloc
   for (const std::string& name : choice) {
     if (std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) { return means_block(name, block); }))
       continue;
-    if (blocks.empty())
-      throw scene::bad_input(fmt::format("{}: there is no block {}: it is not made of named blocks; {}", source,
-                                         scene::quote(name),
-                                         with_surfaces ? "give boundary or a file of triangles" : "leave `block` out"));
-    const std::optional<std::string> nearest = nearest_name(name, blocks);
+    const std::string remedy = with_surfaces ? "give boundary or a file of triangles" : "leave `block` out";
+    const auto nearest = blocks.size() > 1 ? nearest_name(name, blocks) : std::nullopt;
     throw scene::bad_input(
-        fmt::format("{}: there is no block {}; it has {}{}", source, scene::quote(name), list(blocks, with_surfaces),
-                    nearest && blocks.size() > 1 ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : ""));
+        fmt::format("{}: there is no block {}{}", source, scene::quote(name),
+                    blocks.empty() ? ": it is not made of named blocks; " + remedy
+                                   : "; it has " + list(blocks, with_surfaces) +
+                                         (nearest ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : "")));
   }
 }
 

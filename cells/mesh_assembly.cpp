@@ -390,8 +390,6 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const ReadOptions& options
     else
       file.notes.emplace_back("smoothing has no effect on point data");
   }
-  select(file.mesh, options.selection, file.counts, source);
-  require_selected(file.counts, source);
   return file;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,14 +57,11 @@ bool is_displacement_name(const std::string& name) {
   return std::ranges::find(words, lower) != words.end();
 }
 
-void warp(MeshBlocks& read, const ReadOptions& options, const std::string& source) {
-  Warp by;
-  if (options.warp) {
-    by = *options.warp;
-  } else if (read.format.starts_with("Exodus")) {
+void warp(MeshBlocks& read, const std::optional<Warp>& request, const std::string& source) {
+  Warp by = request.value_or(Warp());
+  if (!request && read.format.starts_with("Exodus"))
     for (const std::string& name : point_vectors(read))
       if (by.vector.empty() && is_displacement_name(name)) by.vector = name;
-  }
   if (by.vector.empty()) return;
   if (!read.fields.empty())  // for blocks with a single field, see MeshBlocks
     throw scene::bad_input(

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "cells/mesh_blocks.hpp"
-#include "tessera/read_options.hpp"
+#include "tessera/warp.hpp"
 
 namespace tessera::cells {
 
@@ -13,9 +14,9 @@ namespace tessera::cells {
 /// and "distance" too.
 bool is_displacement_name(const std::string& name);
 
-/// Moves the points of the blocks as the options request. Without a request, points of Exodus files move by the first
-/// vector with a displacement name, with a note. Blocks without the vector do not move. Throws Error(bad_input) that
-/// lists the vectors if no block has the requested one.
-void warp(MeshBlocks& read, const ReadOptions& options, const std::string& source);
+/// Moves the points of the blocks as requested (ReadOptions::warp). Without a request, points of Exodus files move by
+/// the first vector with a displacement name, with a note. Blocks without the vector do not move. Throws
+/// Error(bad_input) that lists the vectors if no block has the requested one.
+void warp(MeshBlocks& read, const std::optional<Warp>& request, const std::string& source);
 
 }  // namespace tessera::cells

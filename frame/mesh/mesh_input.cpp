@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <vector>
-
 #include "io/formats/identify.hpp"
 #include "io/scene/time_series.hpp"
 #include "scene/error.hpp"
@@ -18,13 +16,11 @@ io::InputFile identify_input(const std::filesystem::path& input) {
   return io::identify(input);
 }
 
-cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
-                           const ReadOptions& options) {
-  if (files.size() == 1) return io::read_mesh(first, options);
+std::vector<io::InputFile> identify_pieces(std::span<const std::filesystem::path> files, const io::InputFile& first) {
   std::vector<io::InputFile> all = {first};
   all.reserve(files.size());
   for (const std::filesystem::path& file : files.subspan(1)) all.push_back(identify_input(file));
-  return io::read_mesh(all, options);
+  return all;
 }
 
 double default_unit_distance(const scene::MeshFacts& facts) {

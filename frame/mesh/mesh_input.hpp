@@ -3,21 +3,20 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
+#include <vector>
 
 #include "io/mesh/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
 #include "tessera/dataset.hpp"
 
-/// Reading meshes from files, and the default for a unit distance that is not given.
+/// The files of meshes, and the default for a unit distance that is not given.
 namespace tessera::frame {
 
 /// io::identify, but refuses a time series with its own message. Throws scene::Error.
 io::InputFile identify_input(const std::filesystem::path& input);
 
-/// io::read_mesh for a mesh's files, whose first one has been identified.
-cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
-                           const ReadOptions& options);
+/// The pieces of one mesh, whose first one has been identified.
+std::vector<io::InputFile> identify_pieces(std::span<const std::filesystem::path> files, const io::InputFile& first);
 
 using tessera::diagonal;
 

@@ -112,17 +112,16 @@ cells::MeshFile share_description(Transport& transport, std::span<const int> pro
 
 /// Reduces every rank's part to the selection. Returns the facts and samples of the whole before that; null if
 /// everything is selected. Collective.
-std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOptions& options,
+std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const Selection& selection,
                                               const std::string& source, scene::TetMesh& part, MeshCounts& counts) {
-  if (options.selection.all()) return nullptr;
+  if (selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
   all->facts = agree_facts(transport, part);
   // Sampling depends on the order of corners, so use the renderers' order: the samples are then those of the whole
   // mesh.
   std::vector<scene::Tet> as_read = part.tets;
   std::vector<double> values;
-  if (const auto fill = find_fill_value(transport, part, all->facts);
-      fill && fill->is_outside(options.selection.threshold)) {
+  if (const auto fill = find_fill_value(transport, part, all->facts); fill && fill->is_outside(selection.threshold)) {
     all->facts.scalar_range = {fill->others.low, fill->others.high};
     values = part.scalars;
     for (double& value : part.scalars)  // samples avoid fill values
@@ -132,25 +131,19 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOp
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
   if (!values.empty()) part.scalars = std::move(values);
-  cells::select(part, options.selection, counts, source);
+  cells::select(part, selection, counts, source);
   return all;
 }
 
-ReadOptions with_everything(ReadOptions options) {
-  options.selection.threshold.reset();
-  options.selection.clip.clear();
-  return options;
-}
-
-/// The first projector reads the whole file.
+/// The first projector reads all files.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
                            const io::InputFile& first, const ReadOptions& options, std::span<const int> projectors) {
   DistributedMesh result;
   cells::MeshFile file;
   const bool reads = transport.rank() == projectors.front();
-  if (reads) file = read_input(files, first, with_everything(options));
+  if (reads) file = io::read_mesh(identify_pieces(files, first), options);
   const std::string source = files.front().string();
-  result.of_all = select_part(transport, options, source, file.mesh, file.counts);
+  result.of_all = select_part(transport, options.selection, source, file.mesh, file.counts);
   if (reads) cells::require_selected(file.counts, source);
   result.description = share_description(transport, projectors, file);
   result.part.mesh = std::move(file.mesh);
@@ -164,8 +157,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   const bool reads = place != projectors.end();
   const auto part = static_cast<std::size_t>(place - projectors.begin());
   std::optional<io::MeshPartReading> reading;
-  if (reads)
-    reading.emplace(input, with_everything(options), static_cast<int>(part), static_cast<int>(projectors.size()));
+  if (reads) reading.emplace(input, options, static_cast<int>(part), static_cast<int>(projectors.size()));
 
   std::vector<std::vector<cells::FieldTally>> tallies;
   std::vector<std::string> block_names;
@@ -190,7 +182,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
         count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors);
 
   DistributedMesh result;
-  result.of_all = select_part(transport, options, input.name, own.mesh, own.summary.counts);
+  result.of_all = select_part(transport, options.selection, input.name, own.mesh, own.summary.counts);
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
@@ -231,46 +223,25 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
 
 DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::InputFile& first, const ReadOptions& options,
-                                 const projection::Partition& partition, std::span<const int> projectors,
-                                 scene::Trace* trace) {
+                                 const projection::Partition& partition, std::span<const int> projectors) {
   DistributedMesh result;
-  if (transport.size() == 1) {
-    {
-      const scene::TraceScope scope(trace, "read");
-      result.description = read_input(files, first, with_everything(options));
-    }
-    const std::string source = files.front().string();
-    result.of_all = select_part(transport, options, source, result.description.mesh, result.description.counts);
-    cells::require_selected(result.description.counts, source);
-    result.part.mesh = std::move(result.description.mesh);
-    result.description.mesh = {};
-    result.description.mesh.field_name = result.part.mesh.field_name;
-    result.description.mesh.association = result.part.mesh.association;
-    result.facts = scene::facts_of(result.part.mesh);
-    return result;
-  }
   try {
     {
-      const scene::TraceScope scope(trace, "read");
+      const scene::TraceScope scope(options.trace, "read");
       // One rank decides, so that all do the same.
       std::uint8_t in_parts = 0;
-      if (transport.rank() == projectors.front())
+      if (transport.rank() == projectors.front() && transport.size() > 1)
         in_parts = files.size() == 1 && io::readable_in_parts(first, options) ? 1 : 0;
       in_parts = exchange::broadcast_value(transport, projectors.front(), MessageKind::read_in_parts, in_parts);
       result = in_parts != 0 ? read_parts(transport, first, options, projectors)
                              : read_whole(transport, files, first, options, projectors);
     }
     result.facts = agree_facts(transport, result.part.mesh);
-    result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
-  } catch (const scene::Error& error) {
-    transport.fail(error);
-    transport.check();  // throws the run's error, which may be another rank's
-    throw;
+    if (transport.size() > 1)
+      result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, options.trace);
   } catch (const std::bad_alloc&) {
-    transport.fail(scene::Error(scene::ErrorCode::system_failure,
-                                files.front().string() + ": memory ran out; use more processes or larger machines"));
-    transport.check();
-    throw;
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       first.name + ": memory ran out; use more processes or larger machines");
   }
   // A rank without tets gets these from the others.
   result.part.mesh.field_name = result.description.mesh.field_name;

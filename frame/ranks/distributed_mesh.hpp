@@ -30,12 +30,10 @@ struct DistributedMesh {
 /// Several files are the pieces of one mesh; `first` is the first of them, identified. A single file in a format that
 /// can be read in parts (io::readable_in_parts) is read by all projectors at once, each its share. Anything else is
 /// read by the first projector, which distributes it: one read instead of one per rank. The indices of the tets, and so
-/// every image, do not depend on how the file was read. With one rank it is just io::read_mesh. Records spans `read`
-/// and `partition` in `trace`, not in `options.trace`. An error of one rank is passed to transport.fail() and thrown on
-/// all.
+/// every image, do not depend on how the files were read. Records spans `read` and `partition`. Throws this rank's
+/// error, which the caller passes to transport.fail(), or the run's error.
 DistributedMesh read_distributed(exchange::Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::InputFile& first, const ReadOptions& options,
-                                 const projection::Partition& partition, std::span<const int> projectors,
-                                 scene::Trace* trace);
+                                 const projection::Partition& partition, std::span<const int> projectors);
 
 }  // namespace tessera::frame

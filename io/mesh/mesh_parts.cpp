@@ -7,7 +7,6 @@
 #include "cells/axis_scale.hpp"
 #include "cells/block_choice.hpp"
 #include "cells/mesh_assembly.hpp"
-#include "cells/mesh_selection.hpp"
 #include "cells/part_range.hpp"
 #include "cells/warp.hpp"
 #include "io/mesh/listed_pieces.hpp"
@@ -101,7 +100,7 @@ struct MeshPartReading::State {
       read_shared(part, parts);
     else
       read_listed(part, parts);
-    cells::warp(blocks, options, file.name);
+    cells::warp(blocks, options.warp, file.name);
   }
 };
 
@@ -159,8 +158,6 @@ MeshFilePart MeshPartReading::finish(const cells::ExcessTally& excess_of_all) {
     part.summary.higher_order = assembled.higher_order;
     part.summary.cell_notes = std::move(assembled.notes);
     part.summary.time_step = state_->blocks.time_step;
-    if (auto note = scene::note_on(part.summary.time_step, state_->options.time_step))
-      part.summary.reading_notes.push_back(*std::move(note));
     cells::add_notes(state_->blocks.notes, part.summary.reading_notes);
     part.summary.surfaces = cells::distinct_names(std::move(state_->blocks.surface_names));
     if (is_tets(state_->file)) {
@@ -173,7 +170,6 @@ MeshFilePart MeshPartReading::finish(const cells::ExcessTally& excess_of_all) {
           part.summary.used_points[point / 64] |= std::uint64_t{1} << point % 64;
         }
     }
-    cells::select(part.mesh, state_->options.selection, part.summary.counts, source);
     return part;
   });
 }

@@ -18,23 +18,16 @@ namespace tessera::io {
 namespace {
 
 /// Keeps only the chosen blocks, if more were read, and the names of all.
-cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice& choice) {
+void keep_chosen(cells::MeshBlocks& read, const cells::BlockChoice& choice) {
   if (read.block_names.empty())
     for (const cells::CellBlock& block : read.blocks) read.block_names.push_back(block.name);
   read.block_names = cells::distinct_names(std::move(read.block_names));
-  if (!choice.empty())
-    std::erase_if(read.blocks, [&](const cells::CellBlock& block) {
-      return !block.name.empty() &&
-             !cells::is_chosen(choice, block.name);  // a reader that returns unnamed blocks has chosen them itself
-    });
+  // A reader that returns unnamed blocks has chosen them itself.
+  std::erase_if(read.blocks, [&](const cells::CellBlock& block) {
+    return !block.name.empty() && !cells::is_chosen(choice, block.name);
+  });
   if (read.block_names.size() <= 1)
     for (cells::CellBlock& block : read.blocks) block.name.clear();
-  return read;
-}
-
-cells::MeshBlocks warped(cells::MeshBlocks read, const ReadOptions& options, const std::string& source) {
-  cells::warp(read, options, source);
-  return read;
 }
 
 /// Calls a function of the file's format, with the content if it is a gzip file.
@@ -54,19 +47,43 @@ auto read_content(const InputFile& file, const Read& read) {
   });
 }
 
-cells::MeshBlocks read_unscaled_blocks(const InputFile& file, const MeshOptions& options) {
-  require_mesh(file);
-  return read_content(file, [&](const InputFile& content) {
-    return warped(chosen_blocks(file.format->read_mesh(content, options), options.blocks), options, file.name);
+/// The chosen blocks of a file, warped and scaled.
+cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
+  return with_clean_errors(file.name, [&] {
+    require_mesh(file);
+    if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, file.name);
+    cells::MeshBlocks read =
+        read_content(file, [&](const InputFile& content) { return file.format->read_mesh(content, options); });
+    keep_chosen(read, options.blocks);
+    cells::warp(read, options.warp, file.name);
+    const Box box = read.xy_in_degrees ? cells::box_of_points(read.blocks) : Box();
+    read.axis_scale = cells::chosen_scale(options.axis_scale, read.xy_in_degrees, box, read.notes);
+    cells::scale_blocks(read.blocks, read.axis_scale);
+    return read;
   });
 }
 
-cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
-  cells::MeshBlocks read = read_unscaled_blocks(file, options);
-  const Box box = read.xy_in_degrees ? cells::box_of_points(read.blocks) : Box();
-  read.axis_scale = cells::chosen_scale(options.axis_scale, read.xy_in_degrees, box, read.notes);
-  cells::scale_blocks(read.blocks, read.axis_scale);
-  return read;
+/// The blocks of several files, the pieces of one mesh.
+cells::MeshBlocks read_pieces(std::span<const InputFile> files, const MeshOptions& options) {
+  cells::MeshBlocks all;
+  for (const InputFile& file : files) {
+    cells::MeshBlocks read = read_blocks(file, options);
+    if (!read.fields.empty())
+      throw scene::bad_input(
+          fmt::format("{}: a mesh with levels is read by itself only; give it alone", printable(file.name)));
+    if (all.format.empty()) all.format = fmt::format("{} files: {}", files.size(), read.format);
+    all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
+    for (cells::CellBlock& block : read.blocks) {
+      if (block.source.empty()) block.source = file.name;
+      all.blocks.push_back(std::move(block));
+    }
+    all.time_step = read.time_step;
+    all.axis_scale = read.axis_scale;
+    cells::add_notes(read.notes, all.notes);
+    cells::add_notes(read.surface_names, all.surface_names);
+  }
+  all.block_names = cells::distinct_names(std::move(all.block_names));
+  return all;
 }
 
 /// The options that still apply after the blocks were read.
@@ -100,20 +117,15 @@ void require_mesh(const InputFile& file) {
 }
 
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options) {
-  const std::string& source = file.name;
-  return with_clean_errors(source, [&] {
-    cells::MeshBlocks read = read_blocks(file, options);
-    if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
-    cells::require_blocks(options.blocks, read.block_names, source, options.surfaces);
-    return read;
-  });
+  cells::MeshBlocks read = read_blocks(file, options);
+  cells::require_blocks(options.blocks, read.block_names, file.name, options.surfaces);
+  return read;
 }
 
-cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options) {
-  const std::string& source = file.name;
+cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options) {
+  cells::MeshBlocks read = files.size() == 1 ? read_blocks(files.front(), {options}) : read_pieces(files, {options});
+  const std::string& source = files.front().name;
   return with_clean_errors(source, [&] {
-    cells::MeshBlocks read = read_blocks(file, {options});
-    if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
     cells::require_blocks(options.blocks, read.block_names, source);
     const ReadOptions rest = options_after(read, options);
     cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
@@ -122,11 +134,14 @@ cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options) {
     result.blocks = std::move(read.block_names);
     result.surfaces = cells::distinct_names(std::move(read.surface_names));
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
-    result.time_step = read.time_step;
+    result.time_step = std::move(read.time_step);
     result.axis_scale = read.axis_scale;
-    if (auto note = scene::note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
     return result;
   });
+}
+
+cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options) {
+  return read_mesh(std::span(&file, 1), options);
 }
 
 scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions& options) {
@@ -134,44 +149,6 @@ scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions&
   if (file.format->time_steps == nullptr) return {};
   return with_clean_errors(file.name, [&] {
     return read_content(file, [&](const InputFile& content) { return file.format->time_steps(content, {options}); });
-  });
-}
-
-cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options) {
-  if (files.size() == 1) return read_mesh(files.front(), options);
-  cells::MeshBlocks all;
-  for (const InputFile& file : files) {
-    const std::string& source = file.name;
-    with_clean_errors(source, [&] {
-      cells::MeshBlocks read = read_blocks(file, {options});
-      if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
-      if (!read.fields.empty())
-        throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));
-      if (all.format.empty()) all.format = read.format;
-      all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
-      for (cells::CellBlock& block : read.blocks) {
-        if (block.source.empty()) block.source = source;
-        all.blocks.push_back(std::move(block));
-      }
-      if (auto note = scene::note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
-      all.time_step = read.time_step;
-      all.axis_scale = read.axis_scale;
-      cells::add_notes(read.notes, all.notes);
-      cells::add_notes(read.surface_names, all.surface_names);
-    });
-  }
-  const std::string source = files.empty() ? "mesh" : files.front().name;
-  return with_clean_errors(source, [&] {
-    all.block_names = cells::distinct_names(std::move(all.block_names));
-    cells::require_blocks(options.blocks, all.block_names, source);
-    cells::MeshFile result = cells::assemble_mesh(std::move(all.blocks), options, source);
-    result.format = fmt::format("{} files: {}", files.size(), all.format);
-    result.blocks = std::move(all.block_names);
-    result.surfaces = std::move(all.surface_names);
-    result.time_step = all.time_step;
-    result.axis_scale = all.axis_scale;
-    result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
-    return result;
   });
 }
 

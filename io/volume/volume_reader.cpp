@@ -221,8 +221,6 @@ VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& read,
       for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
       volume.format += ", gzip";
     }
-    if (auto note = scene::note_on(volume.time_step, options.time_step))
-      volume.notes.insert(volume.notes.begin(), *note);
     return volume;
   });
 }

@@ -35,18 +35,16 @@ std::vector<double> content(const scene::TetMesh& mesh, std::size_t t) {
 }
 
 std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& file, const std::vector<int>& projectors,
-                                     PartitionKind kind, ReadOptions options = {}) {
-  options.threads = 1;
+                                     PartitionKind kind, const ReadOptions& options = {}) {
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   exchange::run_ranks(ranks, [&](Transport& transport) {
     result[static_cast<std::size_t>(transport.rank())] =
-        read_distributed(transport, std::span(&file, 1), io::identify(file), options, {kind, 1}, projectors, nullptr);
+        read_distributed(transport, std::span(&file, 1), io::identify(file), options, {kind, 1}, projectors);
   });
   return result;
 }
 
-void expect_as_read_mesh(const std::filesystem::path& file, ReadOptions options = {}) {
-  options.threads = 1;
+void expect_as_read_mesh(const std::filesystem::path& file, const ReadOptions& options = {}) {
   const cells::MeshFile whole = io::read_mesh(file, options);
   const scene::MeshFacts facts = scene::facts_of(whole.mesh);
   for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random})

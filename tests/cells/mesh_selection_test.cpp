@@ -184,15 +184,14 @@ TEST(Threshold, KeepsWholeCellsOfPointData) {
   std::vector<double> values(12, 1.0);
   values[0] = 3;
   block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, values));
-  ReadOptions options;
-  options.selection.threshold = {0.0, 2.0};
-  const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
-  EXPECT_EQ(file.counts.cells_out_of_range, 1u);
-  EXPECT_NEAR(volume(file.mesh), 1, 1e-15);
-  options.selection.threshold = {1.0, 3.0};  // both ends are included
-  EXPECT_NEAR(volume(cells::assemble_mesh({block}, options, "mesh").mesh), 2, 1e-15);
-  options.selection.threshold = {4.0, 5.0};
-  EXPECT_THROW(cells::assemble_mesh({block}, options, "mesh"), scene::Error);
+  const cells::MeshFile file = cells::assemble_mesh({block}, {}, "mesh");
+  MeshCounts counts = file.counts;
+  EXPECT_NEAR(volume(selected(file.mesh, {{}, {{0.0, 2.0}}}, &counts)), 1, 1e-15);
+  EXPECT_EQ(counts.cells_out_of_range, 1u);
+  EXPECT_NEAR(volume(selected(file.mesh, {{}, {{1.0, 3.0}}})), 2, 1e-15);  // both ends are included
+  counts = file.counts;
+  selected(file.mesh, {{}, {{4.0, 5.0}}}, &counts);
+  EXPECT_THROW(cells::require_selected(counts, "mesh"), scene::Error);
 }
 
 TEST(Threshold, GoesByTheCellsValue) {
