@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include "cells/block_tets.hpp"
@@ -31,66 +32,58 @@ using scene::Tet;
 /// Merges blocks into one mesh, a block at a time.
 class Assembly {
  public:
-  Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
-           const std::string& source, const HigherOrderPlan& plan)
-      : cell_keys_(result.cell_keys),
-        notes_(result.notes),
-        mesh_(result.mesh),
-        counts_(result.counts),
-        higher_order_(result.higher_order),
-        fields_(fields),
-        choice_(choice),
-        source_(source),
-        plan_(plan) {}
+  Assembly(std::span<const FieldSummary> fields, const FieldChoice& choice, const std::string& source,
+           const HigherOrderPlan& plan)
+      : fields_(fields), choice_(choice), source_(source), plan_(plan) {}
 
   void reserve(std::size_t points, std::size_t tets) {
     require_points(points);
-    mesh_.positions.reserve(points);
-    mesh_.tets.reserve(tets);
+    result_.mesh.positions.reserve(points);
+    result_.mesh.tets.reserve(tets);
   }
 
   void add(CellBlock& block) {
-    const std::size_t first_point = mesh_.positions.size();
+    const std::size_t first_point = result_.mesh.positions.size();
     if (first_point == 0) {
-      mesh_.positions = std::move(block.positions);
+      result_.mesh.positions = std::move(block.positions);
     } else {
-      mesh_.positions.insert(mesh_.positions.end(), block.positions.begin(), block.positions.end());
+      result_.mesh.positions.insert(result_.mesh.positions.end(), block.positions.begin(), block.positions.end());
       block.positions = {};
     }
-    for (std::size_t v = first_point; v < mesh_.positions.size(); ++v)
-      mesh_.positions[v] += 0.0;  // -0 becomes 0: coincident points then have the same bits
-    counts_.points_read += mesh_.positions.size() - first_point;
-    points_ = std::span(mesh_.positions).subspan(first_point);
-    first_point_ = static_cast<std::uint32_t>(first_point);
+    for (std::size_t v = first_point; v < result_.mesh.positions.size(); ++v)
+      result_.mesh.positions[v] += 0.0;  // -0 becomes 0: coincident points then have the same bits
+    result_.counts.points_read += result_.mesh.positions.size() - first_point;
+    points_ = std::span(result_.mesh.positions).subspan(first_point);
     read_values(block);
 
-    cells_before_ = counts_.cells_read;
-    block_tets_ = &block.tets;
+    cells_before_ = result_.counts.cells_read;
     as_given_ = 0;
     const bool point = choice_.association == Association::point;
-    add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
-                         block.source.empty() ? source_ : block.source, plan_.settings, higher_order_));
-    if (block_tets_ != nullptr) take_tets();
+    add_cells(block.tets,
+              BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
+                         block.source.empty() ? source_ : block.source, plan_.settings, result_.higher_order));
+    if (as_given_) take_tets(block.tets);
     take_added_points();
     block = {};
   }
 
-  void finish(Duplicates duplicates) {
-    mesh_.association = choice_.association;
-    counts_.points_unused = unused_points();
+  AssembledBlocks finish(Duplicates duplicates) {
+    result_.mesh.association = choice_.association;
+    result_.counts.points_unused = unused_points();
     // Cells without a value have been removed, so a blank copy of another does not count as a duplicate.
     if (duplicates == Duplicates::keys) {
-      cell_keys_ = duplicate_keys(mesh_);
+      result_.cell_keys = duplicate_keys(result_.mesh);
     } else {
       const bool drop = duplicates == Duplicates::drop;
-      const std::uint64_t found = find_duplicate_cells(mesh_, drop);
-      (drop ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
-      if (drop && found > 0) counts_.points_unused = unused_points();
+      const std::uint64_t found = find_duplicate_cells(result_.mesh, drop);
+      (drop ? result_.counts.duplicates_dropped : result_.counts.cells_duplicate) = found;
+      if (drop && found > 0) result_.counts.points_unused = unused_points();
     }
-    counts_.tets_made = mesh_.tets.size();
-    if (choice_.association == Association::point) mesh_.scalars = std::move(values_);
-    mesh_.field_name = choice_.label;
-    if (higher_order_.divided > 0) higher_order_.tolerance = plan_.tolerance;
+    result_.counts.tets_made = result_.mesh.tets.size();
+    if (choice_.association == Association::point) result_.mesh.scalars = std::move(values_);
+    result_.mesh.field_name = choice_.label;
+    if (result_.higher_order.divided > 0) result_.higher_order.tolerance = plan_.tolerance;
+    return std::move(result_);
   }
 
  private:
@@ -131,7 +124,7 @@ class Assembly {
             summary == fields_.end() || summary->components == 1 ? "one component"
                                                                  : fmt::format("{} components", summary->components)));
       if (block.cell_count() > 0)
-        notes_.push_back(
+        result_.notes.push_back(
             fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice_.name));
       return;
     }
@@ -142,13 +135,14 @@ class Assembly {
       if (std::abs(value) < std::numeric_limits<double>::min()) value = 0;
   }
 
-  /// Appends, in the order of the cells, the results of threads that split some cells at a time.
-  void add_cells(const BlockCells& cells) {
+  /// Appends, in the order of the cells, the results of threads that split some cells at a time. `given` are the
+  /// block's tets, if it has only tets.
+  void add_cells(std::span<const Tet> given, const BlockCells& cells) {
     const std::size_t cells_a_task = cells.divides() ? 16 : 16384, count = cells.count();
     if (count <= cells_a_task) {
       BlockTets tets;
       cells.split(0, count, tets);
-      append(tets);
+      append(given, tets);
       return;
     }
     const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -172,7 +166,7 @@ class Assembly {
     const auto append_next = [&](std::size_t task) {
       const BlockTets& tets = results[task % in_flight];
       if (tets.error) std::rethrow_exception(tets.error);
-      append(tets);
+      append(given, tets);
     };
     using tbb::filter_mode;
     tbb::parallel_pipeline(in_flight,
@@ -181,76 +175,80 @@ class Assembly {
                                tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, append_next));
   }
 
-  void append(const BlockTets& made) {
-    counts_ += made.counts;
-    higher_order_ += made.curved;
-    if (block_tets_ != nullptr) {
-      // Usually every tet of a block is kept; then it is not copied.
-      if (made.tets.size() == made.counts.cells_read && !block_tets_->empty()) {
-        as_given_ += made.tets.size();
-        return;
-      }
-      append_given();
+  void append(std::span<const Tet> given, const BlockTets& made) {
+    result_.counts += made.counts;
+    result_.higher_order += made.curved;
+    if (as_given_ && made.tets.size() == made.counts.cells_read && !given.empty()) {
+      *as_given_ += made.tets.size();
+      return;
     }
-    append(made.tets, [&](std::size_t t) { return made.cells[t]; });
-    for (const std::uint32_t v : made.nodes) higher_order_nodes_.push_back(first_point_ + v);
+    append_given(given);
+    append_tets(made.tets, [&](std::size_t t) { return made.cells[t]; });
+    for (const std::uint32_t v : made.nodes) higher_order_nodes_.push_back(first_point() + v);
     if (made.added.empty()) return;
-    require_points(mesh_.positions.size() + added_points_.size() + made.added.size());
+    require_points(result_.mesh.positions.size() + added_points_.size() + made.added.size());
     for (const glm::dvec3& p : made.added) added_points_.push_back(p + 0.0);
     added_values_.insert(added_values_.end(), made.added_values.begin(), made.added_values.end());
   }
 
   /// Appends the points at which the block's cells were split to its own, which threads have read until now.
   void take_added_points() {
-    mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
+    result_.mesh.positions.insert(result_.mesh.positions.end(), added_points_.begin(), added_points_.end());
     if (choice_.association == Association::point)
       values_.insert(values_.end(), added_values_.begin(), added_values_.end());
     added_points_.clear(), added_values_.clear();
   }
 
-  /// Appends the block's tets so far, all of which were kept.
-  void append_given() {
-    mesh_.tets.reserve(mesh_.tets.size() + block_tets_->size());
-    append(std::span(*block_tets_).first(as_given_), [](std::size_t t) { return t; });
-    block_tets_ = nullptr;
+  /// Appends the block's tets that were kept as given until now; from here on they are copied.
+  void append_given(std::span<const Tet> given) {
+    if (!as_given_) return;
+    result_.mesh.tets.reserve(result_.mesh.tets.size() + given.size());
+    append_tets(given.first(*as_given_), [](std::size_t t) { return t; });
+    as_given_.reset();
   }
 
   /// Takes over all of a block's tets.
-  void take_tets() {
-    if (!mesh_.tets.empty() || first_point_ > 0 || cells_before_ > 0) return append_given();
-    mesh_.tets = std::move(*block_tets_);
-    if (choice_.association == Association::cell) mesh_.scalars.swap(values_);
+  void take_tets(std::vector<Tet>& given) {
+    if (!result_.mesh.tets.empty() || first_point() > 0 || cells_before_ > 0) return append_given(given);
+    result_.mesh.tets = std::move(given);
+    if (choice_.association == Association::cell) result_.mesh.scalars.swap(values_);
   }
 
   template <class CellOf>
-  void append(std::span<const Tet> tets, const CellOf& cell_of) {
+  void append_tets(std::span<const Tet> tets, const CellOf& cell_of) {
     for (std::size_t t = 0; t < tets.size() && !numbered_; ++t)
-      if (cells_before_ + cell_of(t) != mesh_.tets.size() + t) number_cells();
+      if (cells_before_ + cell_of(t) != result_.mesh.tets.size() + t) number_cells();
     if (numbered_)
-      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.original_cell.push_back(cells_before_ + cell_of(t));
+      for (std::size_t t = 0; t < tets.size(); ++t) result_.mesh.original_cell.push_back(cells_before_ + cell_of(t));
     if (choice_.association == Association::cell)
-      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.scalars.push_back(values_[cell_of(t)]);
+      for (std::size_t t = 0; t < tets.size(); ++t) result_.mesh.scalars.push_back(values_[cell_of(t)]);
     const auto own = static_cast<std::uint32_t>(points_.size()),
                added = static_cast<std::uint32_t>(added_points_.size());
-    const auto corner = [&](std::uint32_t v) { return first_point_ + v + (v < own ? 0 : added); };
-    for (const Tet& t : tets) mesh_.tets.push_back({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])});
+    const std::uint32_t first = first_point();
+    const auto corner = [&](std::uint32_t v) { return first + v + (v < own ? 0 : added); };
+    for (const Tet& t : tets) result_.mesh.tets.push_back({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])});
+  }
+
+  /// In the mesh, of the current block.
+  [[nodiscard]] std::uint32_t first_point() const {
+    return static_cast<std::uint32_t>(result_.mesh.positions.size() - points_.size());
   }
 
   /// From here on, tet and cell numbers differ.
   void number_cells() {
-    mesh_.original_cell.reserve(mesh_.tets.capacity());
-    mesh_.original_cell.resize(mesh_.tets.size());
-    std::iota(mesh_.original_cell.begin(), mesh_.original_cell.end(), std::uint64_t{0});
+    result_.mesh.original_cell.reserve(result_.mesh.tets.capacity());
+    result_.mesh.original_cell.resize(result_.mesh.tets.size());
+    std::iota(result_.mesh.original_cell.begin(), result_.mesh.original_cell.end(), std::uint64_t{0});
     numbered_ = true;
   }
 
   /// Number of points that no tet uses.
   std::uint64_t unused_points() {
-    std::vector<std::uint8_t> is_used(mesh_.positions.size());
+    std::vector<std::uint8_t> is_used(result_.mesh.positions.size());
     constexpr std::size_t grain = 65536;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), grain), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result_.mesh.tets.size(), grain), [&](const auto& range) {
       for (std::size_t t = range.begin(); t < range.end(); ++t)
-        for (const std::uint32_t v : mesh_.tets[t]) {
+        for (const std::uint32_t v : result_.mesh.tets[t]) {
           std::atomic_ref<std::uint8_t> point(is_used[v]);
           if (point.load(std::memory_order_relaxed) == 0) point.store(1, std::memory_order_relaxed);
         }
@@ -259,22 +257,17 @@ class Assembly {
     return static_cast<std::uint64_t>(std::ranges::count(is_used, 0));
   }
 
-  std::vector<std::uint64_t>& cell_keys_;
-  std::vector<std::string>& notes_;
-  scene::TetMesh& mesh_;
-  MeshCounts& counts_;
-  HigherOrderCells& higher_order_;
+  AssembledBlocks result_;
   std::span<const FieldSummary> fields_;
   const FieldChoice& choice_;
   const std::string& source_;
   const HigherOrderPlan& plan_;
   std::span<const glm::dvec3> points_;  ///< of the current block
-  std::uint32_t first_point_ = 0;
-  std::uint64_t cells_before_ = 0;          ///< of the previous blocks
-  std::vector<Tet>* block_tets_ = nullptr;  ///< of the current block, while all tets processed so far are kept
-  std::size_t as_given_ = 0;                ///< the number of these; they are not in the mesh yet
-  std::vector<double> values_;              ///< of all points so far, or of the block's cells
-  std::vector<glm::dvec3> added_points_;    ///< of the current block
+  std::uint64_t cells_before_ = 0;      ///< of the previous blocks
+  /// While all of the current block's tets are kept, usually to its end, they are not copied: the number so far.
+  std::optional<std::size_t> as_given_;
+  std::vector<double> values_;            ///< of all points so far, or of the block's cells
+  std::vector<glm::dvec3> added_points_;  ///< of the current block
   std::vector<double> added_values_;
   std::vector<std::uint32_t> higher_order_nodes_;  ///< of all divided cells
   bool numbered_ = false;
@@ -285,8 +278,7 @@ class Assembly {
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
                                 Duplicates duplicates) {
-  AssembledBlocks result;
-  Assembly assembly(result, fields, choice, source, plan);
+  Assembly assembly(fields, choice, source, plan);
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
@@ -294,8 +286,7 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
   }
   if (blocks.size() > 1) assembly.reserve(points, tets);
   for (CellBlock& block : blocks) assembly.add(block);
-  assembly.finish(duplicates);
-  return result;
+  return assembly.finish(duplicates);
 }
 
 std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order,
