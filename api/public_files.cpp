@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/dataset.hpp"
+#include "api/input_file.hpp"
 #include "frame/mesh/array_mesh.hpp"
 #include "io/formats/identify.hpp"
 #include "io/image/image_deep_exr.hpp"
@@ -24,6 +25,7 @@
 #include "scene/error.hpp"
 #include "scene/label_source.hpp"
 #include "scene/threads.hpp"
+#include "system/missing_file.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/program/output_file.hpp"
@@ -127,10 +129,11 @@ void write_mesh_pieces(const MeshArrays& arrays, const std::filesystem::path& fi
   writer.commit();
 }
 
-void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
-                       std::optional<int> pieces) {
-  io::InputFile identified;
-  if (!input.empty()) io::require_mesh(identified = io::identify(input));  // first: another output would not help
+void check_mesh_output(const std::filesystem::path& file, const InputFile* input, std::optional<int> pieces) {
+  const InputFile::Found* const found = input == nullptr ? nullptr : &StateAccess::of(*input);
+  if (found != nullptr && !found->is_there) throw system::missing_file(input->path());
+  if (found != nullptr) io::require_mesh(found->file);  // first: another output would not help
+  const std::filesystem::path read = input == nullptr ? std::filesystem::path() : input->path();
   const auto extension = file.extension();
   if (!pieces) {
     if (extension == ".pvtu")
@@ -139,13 +142,13 @@ void check_mesh_output(const std::filesystem::path& file, const std::filesystem:
     if (extension != ".vtu" && extension != ".tets")
       throw scene::bad_input(fmt::format("{}: '{}' is not a mesh format to write; choose .vtu or .tets", file.string(),
                                          extension.string()));
-    return check_output(file, input);
+    return check_output(file, read);
   }
   if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
-  std::vector<std::filesystem::path> inputs = {input};
-  if (io::readable_in_parts(identified, {}) && input.extension() != ".tets") {
-    const auto read = io::files_of_parts(identified);
-    inputs.insert(inputs.end(), read.begin(), read.end());
+  std::vector<std::filesystem::path> inputs = {read};
+  if (found != nullptr && io::readable_in_parts(found->file, {})) {
+    const auto parts = io::files_of_parts(found->file);
+    inputs.insert(inputs.end(), parts.begin(), parts.end());
   }
   for (const auto& one : inputs) {
     check_output(file, one);

@@ -39,7 +39,7 @@ std::optional<ConvertPieces> convert_pieces(const OptionWords& words) {
 
 void convert_mesh(const InputFile& input, const std::filesystem::path& output, ReadOptions options, int subdivide,
                   const std::optional<ConvertPieces>& pieces, bool quiet) {
-  check_mesh_output(output, input.path(), pieces ? std::optional(pieces->count) : std::nullopt);
+  check_mesh_output(output, &input, pieces ? std::optional(pieces->count) : std::nullopt);
   options.keep_corners = true;
   StatusLine line(shows_progress(quiet));
   const Dataset data = open_watched(input, options, line);

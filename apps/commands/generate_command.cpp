@@ -68,7 +68,7 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
                               name_of(volume->grid().type)));
     return;
   }
-  check_mesh_output(output, {});
+  check_mesh_output(output, nullptr);
   const MeshArrays mesh = datasets::arrays_of(datasets::generate(kind, values));
   line.begin("writing " + output.filename().string());
   write_mesh(mesh, output);

@@ -22,10 +22,10 @@ TESSERA_EXPORT void write_mesh(const MeshArrays& mesh, const std::filesystem::pa
 /// Writes a mesh as a .pvtu and `pieces` .vtu files next to it, each tet in one of them, for ranks to read.
 TESSERA_EXPORT void write_mesh_pieces(const MeshArrays& mesh, const std::filesystem::path& file, int pieces,
                                       const Partition& partition = {});
-/// For use before reading: throws Error(bad_input) unless `input`, if any, is a mesh's file, a mesh can be written to
-/// `file`, in `pieces` pieces if a number is given, and none of the files would be `input` or one of its pieces. Files
-/// of these names may exist, unless they are read.
-TESSERA_EXPORT void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
+/// For use before reading: throws Error(bad_input) unless `input`, if not null, is a mesh's file, a mesh can be written
+/// to `file`, in `pieces` pieces if a number is given, and none of the files would be `input` or one of its pieces.
+/// Files of these names may exist, unless they are read.
+TESSERA_EXPORT void check_mesh_output(const std::filesystem::path& file, const InputFile* input,
                                       std::optional<int> pieces = std::nullopt);
 
 /// Writes a grid in the format of its extension, .vti .vtr .nrrd .raw .bricks, some slices at a time, so that it may be

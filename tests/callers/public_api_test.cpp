@@ -229,9 +229,10 @@ TEST(CallersMesh, PiecesAreOneMeshThatNumbersItsOriginalCells) {
   EXPECT_EQ(cells->association, Association::cell);
   EXPECT_EQ(cells->high, static_cast<double>(cubes.cubes - 1));
   // An input must not be overwritten.
-  EXPECT_THROW(check_mesh_output(folder / "mesh.pvtu", folder / "mesh.pvtu", 2), Error);
-  EXPECT_NO_THROW(check_mesh_output(folder / "other.pvtu", folder / "mesh.pvtu", 2));
-  EXPECT_THROW(check_mesh_output(folder / "other.vtu", folder / "mesh.pvtu", 2), Error);
+  const InputFile input(folder / "mesh.pvtu");
+  EXPECT_THROW(check_mesh_output(folder / "mesh.pvtu", &input, 2), Error);
+  EXPECT_NO_THROW(check_mesh_output(folder / "other.pvtu", &input, 2));
+  EXPECT_THROW(check_mesh_output(folder / "other.vtu", &input, 2), Error);
 }
 #endif
 
