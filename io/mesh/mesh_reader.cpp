@@ -63,11 +63,12 @@ cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options)
   });
 }
 
-/// The blocks of several files, the pieces of one mesh.
+/// The blocks of one file or of several, the pieces of one mesh.
 cells::MeshBlocks read_pieces(std::span<const InputFile> files, const MeshOptions& options) {
   cells::MeshBlocks all;
   for (const InputFile& file : files) {
     cells::MeshBlocks read = read_blocks(file, options);
+    if (files.size() == 1) return read;
     if (!read.fields.empty())
       throw scene::bad_input(
           fmt::format("{}: a mesh with levels is read by itself only; give it alone", printable(file.name)));
@@ -123,7 +124,7 @@ cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& opt
 }
 
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options) {
-  cells::MeshBlocks read = files.size() == 1 ? read_blocks(files.front(), {options}) : read_pieces(files, {options});
+  cells::MeshBlocks read = read_pieces(files, {options});
   const std::string& source = files.front().name;
   return with_clean_errors(source, [&] {
     cells::require_blocks(options.blocks, read.block_names, source);
