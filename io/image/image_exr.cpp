@@ -144,7 +144,7 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
 
 std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
   MemoryStream stream;
-  writing("image", [&] { encode(stream, image, "picture", options); });
+  writing("image", [&] { encode(stream, image, "image", options); });
   return stream.take();
 }
 

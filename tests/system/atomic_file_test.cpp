@@ -195,7 +195,7 @@ TEST(AtomicFile, RefusesWhereNothingCanBeWritten) {
   const TemporaryFolder folder;
   folder.write("file", "");
   expect_bad_input([&] { system::AtomicFile(folder / "none/out"); }, {"none/out: ", "make the directory first"});
-  expect_bad_input([&] { system::AtomicFile(folder / "file/out"); }, {"file/out: ", "folder"});
+  expect_bad_input([&] { system::AtomicFile(folder / "file/out"); }, {"file/out: ", "make the directory first"});
   expect_bad_input([&] { system::AtomicFile(folder.path()); }, {"name a file, not a directory"});
   expect_bad_input([&] { system::AtomicFile(folder.path().string() + "/"); }, {"name a file, not a directory"});
   expect_bad_input([&] { system::AtomicFile("/dev/null"); }, {"/dev/null: is not a regular file"});
