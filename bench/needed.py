@@ -41,7 +41,7 @@ def cells(args, words):
     def both(function, m):
         (with_it, ms), (without, other_ms) = found[function, "default"], found[function, m]
         less = 100 * (1 - with_it[work] / max(without[work], 1))
-        return f"{ms:.0f} / {other_ms:.0f}" + (f" ({less:.0f} % less)" if less >= 0.5 else "")
+        return f"{ms:.0f} / {other_ms:.0f}" + (f" (-{less:.0f} %)" if less >= 0.5 else "")
 
     pair = lambda m: f"{both('default', m)}; {both('sparse', m)}" if ("sparse", m) in found else "-"
     sent = [counted(*more, ranks=2, repeat=())[1].get("exchange_bytes", 0) for more in ([], ["--without", "merging"])] if not is_volume else []
@@ -55,7 +55,7 @@ def cells(args, words):
 def main():
     args = options(__doc__, data=pathlib.Path, only=",".join(DATA))
     section = Section(args)
-    section.table("l" * 9, "data set", "of", "left out by culling: default / sparse", "culling: default; sparse", "skipping: default; sparse", "termination: opaque",
+    section.table("l" * 9, "data set", "size", "left out by culling: default / sparse", "culling: default; sparse", "skipping: default; sparse", "termination: opaque",
                   "lattice: default", "bricks held, MB: sparse", "merging, MB sent")
     for name in args.only.split(","):
         section.row(name, *cells(args, data_words(args, name)))
