@@ -30,7 +30,7 @@ def figures(trace):
 def main():
     args = options(__doc__, programs=PROGRAMS, frames=20, repeat=3)
     section, trace, images = Section(args), args.work / "trace.json", []
-    section.table("lrrr", "picture", "MB a frame that come", "bytes a pixel", "assemble, CPU ms a frame")
+    section.table("lrrr", "image", "MB received per frame", "bytes per pixel", "assembly, CPU ms per frame")
     for name, data in MESHES.items():
         found = []
         for _ in range(args.repeat):

@@ -58,7 +58,7 @@ def split_share(frames):
 
 
 def table_4(args, section):
-    section.table("l" * 8, "animation, cost map", "learned", "accurate: here", "printed", "splatting: here", "printed", "back face: here", "printed")
+    section.table("l" * 8, "animation, cost map", "learned", "accurate: ours", "thesis", "splatting: ours", "thesis", "back face: ours", "thesis")
     shares = {}
     for kind in ("rotation", "zoom"):
         for name, resolution in RESOLUTIONS.items():
@@ -68,7 +68,7 @@ def table_4(args, section):
             printed = PRINTED_4.get((kind, name)) or ["+0.5 at most"] * 3
             learned, *here = (deviation(frames) for frames in measured.values())
             section.row(f"{kind}, {name}", learned, *(cell for pair in zip(here, printed) for cell in pair))
-    section.text("CPU time of finding the split over that of rendering, rotation / zoom [%]:")
+    section.text("CPU time of finding the split, relative to that of rendering, for rotation / zoom [%]:")
     section.table("l" * 5, "cost map", *METHODS)
     for name in RESOLUTIONS:
         section.row(name, *(" / ".join(shares[name, method]) for method in METHODS))
@@ -76,7 +76,7 @@ def table_4(args, section):
 
 
 def table_5(args, section):
-    section.table("rlllll", "frames left out", "back face, a quarter: here", "printed", "learned", "the frame before: here", "printed")
+    section.table("rlllll", "frames left out", "back face, a quarter: ours", "thesis", "learned", "previous frame: ours", "thesis")
     for left_out, (cost, before) in PRINTED_5.items():
         here = [deviation(animated(args, "rotation", method, 0.5, left_out)) for method in ("backface", "learned", "previous")]
         section.row(left_out, here[0], cost, here[1], here[2], before)

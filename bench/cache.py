@@ -41,8 +41,8 @@ def ahead(args, volume, printed, printed_bricks):
 def table_2(args, section):
     volume = generated(args, "head-225.nrrd", "head", "n=225", "bits=8")
     function = written(args.work / "function.txt", "64 0.8 0.5 0.4 0\n255 1 1 0.9 2\n")  # as in cache_frames.cpp
-    section.table("l" * 10, "brick size, here / printed", "samples rendered [%]: here", "printed", "stored, fixed [%]: here", "printed",
-                  "stored, variable [%]: here", "printed", "frames/s, by bricks: here", "printed", "default")
+    section.table("l" * 10, "brick size, ours / thesis", "samples rendered [%]: ours", "thesis", "stored, fixed [%]: ours", "thesis",
+                  "stored, variable [%]: ours", "thesis", "frames/s, by bricks: ours", "thesis", "default")
 
     def rendered(brick, *words):
         """Samples stored, and frames per second of CPU time: the minimum of three runs."""
@@ -64,7 +64,7 @@ def table_3(args, section):
     asked = {(units, name): dict(units=units, **words, volume="head", animation="explore", degrees=1, frames=args.frames, share=230 / 320)
              for units in (4, 9) for name, words in caches.items()}
     runs = dict(zip(asked, frames_of(args, asked.values())))
-    section.table("r" + "l" * 8, "threshold", *(column for units in (4, 9) for column in (f"{units} units, lru: here", "printed", "proximity: here", "printed")))
+    section.table("r" + "l" * 8, "threshold", *(column for units in (4, 9) for column in (f"{units} units, lru: ours", "thesis", "proximity: ours", "thesis")))
     for threshold, printed in PRINTED_3.items():
         cells = []
         for (units, cache), in_print in zip([(units, cache) for units in (4, 9) for cache in ("lru", threshold)], printed):
@@ -80,7 +80,7 @@ def figure_21(args, section):
     kinds = [(name, animation, words) for animation in ("turn", "zoom") for name, words in
              ((f"{animation}, proximity{', %d ahead' % limit if animation == 'turn' else ''}: frames/s", dict(cache="proximity", preload=limit)),
               (f"{animation}, lru: frames/s", dict(cache="lru")))]
-    section.table("r" + "l" * 8, "degrees a frame", *(column for name, _, _ in kinds for column in (name, "wait [ms]")))
+    section.table("r" + "l" * 8, "degrees per frame", *(column for name, _, _ in kinds for column in (name, "wait [ms]")))
     for degrees in (1, 2, 4, 14):
         cells = []
         for found in frames_of(args, [dict(volume="head", animation=animation, degrees=degrees, units=6, step=1, frames=frames_per_speed, share=211 / 566,
@@ -93,7 +93,7 @@ def figure_21(args, section):
 
 def most_loaded(args, section, volume, share, limit):
     """Rows by cache and speed: quantiles over frames of the most bricks that any unit loads."""
-    section.table("rllll", "degrees a frame", "cache", "bricks loaded, most of a unit: median", "largest", f"frames over {limit} [%]")
+    section.table("rllll", "degrees per frame", "cache", "bricks loaded by the unit with the most: median", "largest", f"frames over {limit} [%]")
     kinds = {"lru": dict(cache="lru"), "proximity": dict(cache="proximity"), f"proximity, {limit} ahead": dict(cache="proximity", preload=limit)}
     for degrees in (2, 7, 14):
         runs = frames_of(args, [dict(volume=volume, animation="turn", degrees=degrees, units=6, frames=min(args.frames, 720 // degrees), share=share,

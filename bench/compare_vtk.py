@@ -168,9 +168,9 @@ def compare(args, name):
 def main():
     args = options(__doc__, data=pathlib.Path, only=",".join(MESHES))
     section = Section(args)
-    section.text(f"Pictures of 512x384, linear RGB, VTK {vtk.VTK_VERSION}.")
+    section.text(f"Images of 512x384 pixels in linear RGB, VTK {vtk.VTK_VERSION}.")
     section.table("lrrrrrrrl", "mesh, field", "Tessera against the reference", "VTK, same tets: max", "RMS", "over 0.02 [%]", "lit by one alone",
-                  "own tets: max", "RMS", "tets ours / VTK")
+                  "own tets: max", "RMS", "tets: ours / VTK")
     for name in args.only.split(","):
         section.row(*compare(args, name))
     section.keep()

@@ -36,12 +36,12 @@ def volumes(args, section):
         section.row(ranks, *(cell for name in EXCHANGES for cell in (
             f"{of[name]['bytes'] / ranks / 1e6:.2f}", f"{of[name]['messages'] / ranks:.0f}", f"{of[name]['cpu_ms'] + 1e3 * of[name]['most_bytes'] / BANDWIDTH:.1f}")))
     worst = max(row["error"] for of in rows.values() for row in of.values())
-    section.text(f"`head` of {SAMPLES}^3, {SIZE}x{SIZE} pixels, {VIEWS} views. *ms*: CPU time, and the most bytes of a process at 95 MB/s. Images are within "
-                 f"{error(worst)} of that of one process.")
+    section.text(f"`head` of {SAMPLES}^3, {SIZE}x{SIZE} pixels, {VIEWS} views. *ms*: CPU time, plus the time to send the largest number of bytes of a process at 95 MB/s. "
+                 f"Images differ from that of one process by at most {error(worst)}.")
 
 
 def meshes(args, section):
-    section.table("l" + "r" * 6, "mesh", "runs a pixel", "runs: MB", "direct send: MB", "radix-k: MB", "error of runs", "of direct send")
+    section.table("l" + "r" * 6, "mesh", "runs per pixel", "runs: MB", "direct send: MB", "radix-k: MB", "error of runs", "error of direct send")
     files = {}
     for name in ("notch", "disk-out") if args.data else ():
         run(args.tessera, "convert", *data_words(args, name), args.work / f"{name}.tets", "--quiet")

@@ -134,9 +134,9 @@ def main():
         section.table("lrrr", "data set", "alpha", "saturated [%]", "colours")
         for row in outside:
             section.row(*row)
-    section.keep("`tessera render FILE -o OUT`, no other option, 1024 x 1024. Of pixels with alpha of 1/255 or more: mean alpha (wanted 0.05 to 0.6), share with "
-                 f"0.98 or more (wanted at most 2 %), distinguishable colours (wanted 3); of {len(files)} data sets within all three: {len(files) - len(outside)}; "
-                 "shapes, meshes without a field, count as within")
+    section.keep("`tessera render FILE -o OUT` without other options, 1024 x 1024 pixels. For pixels with alpha of 1/255 or more, the targets are a mean alpha of "
+                 "0.05 to 0.6, at most 2 % with alpha of 0.98 or more, and 3 distinguishable colours. Data sets within all three targets: "
+                 f"{len(files) - len(outside)} of {len(files)}, including shapes (meshes without a field), which are not judged")
 
 
 if __name__ == "__main__":

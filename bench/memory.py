@@ -16,7 +16,7 @@ from results import generated, measure_parts, options, render, run, written
 
 RANKS = 4  # for sort-last
 PATH = 4  # views of one turn
-WAYS = {"1": (1, []), "2, sort-first": (2, []), "3, sort-first": (3, []), "2, sort-last": (2, ["--distribution", "sort-last"]),
+WAYS = {"1 process": (1, []), "2, sort-first": (2, []), "3, sort-first": (3, []), "2, sort-last": (2, ["--distribution", "sort-last"]),
         "3, sort-last": (3, ["--distribution", "sort-last"])}
 
 
@@ -55,16 +55,16 @@ def of_sort_last(args, section):
         run(args.tessera, "convert", large_volume(args), volume, "--quiet")
     # Nothing is clear and nothing opaque, so that every brick is visible; a raw file's voxels have length one.
     function = written(args.work / "all.txt", f"0 0.1 0.2 0.8 {0.2 / n}\n128 0.9 0.8 0.3 {0.6 / n}\n255 1 0.3 0.1 {1.5 / n}\n")
-    section.table("lllrl", "way", "bricks loaded, by frame", "thrown out again, by frame", "bricks in memory at the end, all processes",
-                  "largest resident set of each, MiB")
+    section.table("lllrl", "distribution", "bricks loaded in each frame", "bricks evicted in each frame", "bricks in memory at the end, all processes",
+                  "largest resident set of each process, MiB")
     for way in ("sort-first", "sort-last"):
         report, sizes = peaks(args, volume, args.memory, RANKS, "--size", "512x512", "--orbit", PATH, "--transfer-function", function, "--projection", "perspective",
                               "--distribution", way)
         counters = [frame["counters"] for frame in report["frames"]]
         loaded, evicted = (", ".join(f"{c[name]:,}" for c in counters) for name in ("bricks_loaded", "bricks_evicted"))
         section.row(way, loaded, evicted, f"{counters[-1]['bytes_resident'] / 1e9:.2f} GB", sizes)
-    section.text(f"`radial` of {n}^3, {volume.stat().st_size / 1e9:.2f} GB, {counters[-1]['bricks_total']:,} bricks of 32^3; {RANKS} processes of one thread, "
-                 f"`--memory {args.memory}` each, {PATH} views once round it at 512 x 512 pixels.")
+    section.text(f"`radial` of {n}^3, {volume.stat().st_size / 1e9:.2f} GB, {counters[-1]['bricks_total']:,} bricks of 32^3; {RANKS} processes of one thread with "
+                 f"`--memory {args.memory}` each; {PATH} views around the volume at 512 x 512 pixels.")
 
 
 if __name__ == "__main__":

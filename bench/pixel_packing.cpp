@@ -89,7 +89,7 @@ Cost cost_of(const Tiles& tiles, bool pack, Image& into) {
 
 int main(int count, char** words) {
   fmt::print(
-      "| picture | bytes a pixel: as they are | packed | ns a pixel: append | pack | place | unpack |\n"
+      "| image | bytes per pixel: unpacked | packed | ns per pixel: append | pack | place | unpack |\n"
       "|---|---:|---:|---:|---:|---:|---:|\n");
   for (const char* word : std::span(words, static_cast<std::size_t>(count)).subspan(1)) {
     const std::filesystem::path file(word);

@@ -35,7 +35,7 @@ def main():
 
     section = Section(args)
     rounds = [{arrangement: measured(arrangement) for arrangement in ARRANGEMENTS} for _ in range(args.pairs)]
-    section.table("lll", "arrangement", "time over that of one process: median (range); a frame", "CPU over that of one process: median (range); a frame")
+    section.table("lll", "arrangement", "time relative to one process: median (range); per frame", "CPU time relative to one process: median (range); per frame")
     for arrangement in ARRANGEMENTS:
         cells = []
         for i in range(2):
@@ -50,7 +50,7 @@ def main():
     serial = sum(float(row["average_ms"]) for row in rows if row["stage"] in ("other", "wait"))
     cpu = sum(float(row["cpu_ms"]) for row in rows if row["cpu_ms"] and row["stage"] not in ("whole", "other", "wait", "write"))
     section.row(f"serial in {ONE}", f"{serial:.1f} ms", f"{100 * serial / cpu:.2f} % of {cpu:.0f} ms")
-    section.keep("what ranks cost with cube 64, pairs in turn")
+    section.keep("the cost of ranks with cube 64; the arrangements take turns")
 
 
 if __name__ == "__main__":

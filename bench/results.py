@@ -150,17 +150,18 @@ def commit():
 
 
 def machine():
-    """The processor's name and number of cores."""
+    """The processor's name, and its number of cores unless that is two, as docs/RESULTS.md states of all machines."""
     names = (line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
-    return f"{next(names, 'unknown CPU').replace('(R)', '').removesuffix(' Processor')}, {os.cpu_count()} cores"
+    cores = "" if os.cpu_count() == 2 else f", {os.cpu_count()} cores"
+    return next(names, "unknown CPU").replace("(R)", "").removesuffix(" Processor") + cores
 
 
-def command():
-    """The command line of this run, without the options that name programs, directories and outputs."""
+def command(part=""):
+    """The command line of this run, without the options that name programs, directories and outputs, and without --only for the one part measured."""
     words, rest = [], iter(sys.argv[1:])
     for word in rest:
         name, _, value = word.partition("=")
-        if name in ("--tessera", "--work", "--data", "--programs"):
+        if name in ("--tessera", "--work", "--data", "--programs") or (name == "--only" and part):
             None if value else next(rest, None)
         elif name != "--write":
             words.append(word)
@@ -203,9 +204,10 @@ class Section:
         """Writes the section if --write is given; the caption is `made` (default: date, commit, machine, load), the command and the note."""
         made = made or self.made()
         if self.args.write:
-            path = STORE / (self.name.split()[0].partition(".")[0] + ".json")
+            script, _, part = self.name.partition(" ")
+            path = STORE / (script.partition(".")[0] + ".json")
             sections = json.loads(path.read_text()) if path.exists() else {}
-            sections[self.name] = {"caption": f"{made} `{command()}`{note and ': '}{note}", "blocks": self.blocks}
+            sections[self.name] = {"caption": f"{made} `{command(part)}`{note and ': '}{note}", "blocks": self.blocks}
             path.write_text(dumped(sections))
             update()
 

@@ -4,7 +4,7 @@
 
     bench/scaling.py --work FOLDER [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1] [--write]
 
-Cubes with these numbers of tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as printed, of one thread each.
+Cubes with these numbers of tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as in the paper, of one thread each.
 Every run leaves a file of figures in --work, and is not repeated if that exists: so an interrupted run can be continued, and a later commit needs a new directory.
 
 Measured from the traces of all ranks (`render --timing`): CPU time per rank and stage, bytes, the largest memory of a rank, imbalance. The time of a frame is that
@@ -109,7 +109,7 @@ def sums(figures, role):
 
 
 def table_1(runs, section):
-    section.table("rrrrrr", "M tets", "nodes", "printed: kTets/s", "efficiency", "here: kTets/s", "efficiency")
+    section.table("rrrrrr", "M tets", "nodes", "paper: kTets/s", "efficiency", "ours: kTets/s", "efficiency")
     first = {}
     for r in runs:
         million, nodes = r["million"], r["nodes"]
@@ -123,7 +123,7 @@ def table_1(runs, section):
 def figure_9(runs, section):
     for role in STAGES:
         shown = [s for s in STAGES[role] if any(sums(r, role)[0][s] >= 5e-5 for r in runs)]
-        section.text(f"{role.capitalize()}s: CPU time a frame [ms], average over ranks (worst rank):")
+        section.text(f"{role.capitalize()}s: CPU time per frame [ms], average over ranks (worst rank):")
         section.table("r" * (4 + len(shown)), "M tets", "nodes", *shown, "all", "imbalance")
         for r in runs:
             average, totals = sums(r, role)
@@ -131,7 +131,7 @@ def figure_9(runs, section):
             mean = sum(all_of) / len(all_of)
             section.row(r["million"], r["nodes"], *(f"{1e3 * average[s]:.1f}" for s in shown), f"{1e3 * mean:.1f} ({1e3 * max(all_of):.1f})",
                         f"{max(all_of) / mean:.2f}")
-    section.table("rrrr", "M tets", "nodes", "MB a frame, all", "largest memory of a rank [MiB]")
+    section.table("rrrr", "M tets", "nodes", "MB per frame, all", "largest memory of a rank [MiB]")
     for r in runs:
         sent = sum(t.get("bytes send", 0) for role in STAGES for t in sums(r, role)[1])
         section.row(r["million"], r["nodes"], f"{sent / 1e6:.1f}", f"{max(r['memory']) / 2**20:.0f}")

@@ -130,7 +130,7 @@ def main():
             measured, load, *errors = zip(*found)
             section.row(nodes, mbit, ", ".join(f"{1e3 * seconds:.0f}" for seconds in measured), f"{max(load):.1f}",
                         *(f"{statistics.median(of):+.0f} ({', '.join(f'{e:+.0f}' for e in of)})" for of in errors))
-    section.keep(f"{1e9 * byte:.2f} ns of a core for a byte at either end.")
+    section.keep(f"in the model, a byte takes {1e9 * byte:.2f} ns of a core at each end of a link.")
 
 
 if __name__ == "__main__":

@@ -132,7 +132,7 @@ def main():
     args = options(__doc__, sides="69,138", frames=4, jobs=1)
     section = Section(args)
     small, large = (base(args, int(side)) for side in args.sides.split(","))
-    section.table("rrr" + "l" * len(NODES), "cores a node", "Gbit/s", "tets", *(f"{nodes} nodes" for nodes in NODES))
+    section.table("rrr" + "l" * len(NODES), "cores per node", "Gbit/s", "tets", *(f"{nodes} nodes" for nodes in NODES))
     with multiprocessing.Pool(args.jobs) as pool:
         found = pool.imap(functools.partial(predicted, small, large, args.frames),
                           [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in NODES])

@@ -49,11 +49,11 @@ def figure_15(args, section):
             alone.setdefault(way, fast / slow - 1)
             cells += [f"{fast:.2f} / {slow:.2f}", f"{100 * (fast / slow - 1) / alone[way]:.0f}"]
         section.row(units, *cells)
-    section.text(f"Early termination makes one process {1 + next(iter(alone.values())):.1f} times as fast; *gain kept* is what is left of that gain.")
+    section.text(f"Early termination makes one process {1 + next(iter(alone.values())):.1f} times as fast; *gain kept* is the remaining share of that gain.")
 
 
 def figure_1(args, section):
-    section.table("rrr", "distance, half diagonals", "sort-first: largest over mean", "sort-last: largest over mean")
+    section.table("rrr", "distance, in half diagonals", "sort-first: busiest over mean", "sort-last: busiest over mean")
     for distance in (4, 2, 1, 0.5, 0.25):
         place = [d * distance * math.sqrt(3) / math.hypot(0.6, 0.35, 0.72) for d in (0.6, 0.35, 0.72)]
         path = [{"position": place, "focal_point": [p * 0.5 for p in place], "view_up": [0, 1, 0], "view_angle": 40}] * 3
@@ -69,7 +69,7 @@ def sent(args, units, size, *words):
 
 
 def figure_6(args, section):
-    section.table("r" * 7, "processes", "MB a process sends", "of 20 bytes a pixel [%]", "messages", "ms at 95 MB/s", "asynchronous, ms", "synchronous, ms")
+    section.table("r" * 7, "processes", "MB a process sends", "relative to 20 bytes per pixel [%]", "messages", "ms at 95 MB/s", "asynchronous, ms", "synchronous, ms")
     for units in (2, 3, 4, 5, 6):
         (each, messages, ms), (_, _, synchronous_ms) = (sent(args, units, "1024x1024", "--direct-send", how) for how in ("asynchronous", "synchronous"))
         section.row(units, f"{each / 1e6:.2f}", f"{100 * each / (20 * 1024 ** 2 * (units - 1) / units):.0f}", f"{messages:.0f}",

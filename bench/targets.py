@@ -29,7 +29,7 @@ end_header
 class Bench:
     def __init__(self, args):
         self.args, self.section = args, Section(args)
-        self.section.table("lll", "what", "wanted", "reached")
+        self.section.table("lll", "measurement", "target", "measured")
 
     def converted(self, name, *words):
         """A mesh of `tessera convert`, made if it is not there yet."""
@@ -57,7 +57,7 @@ class Bench:
 
 
 def ms(frame):
-    return f"{frame['least']:.0f} ms (median {frame['median']:.0f})"
+    return f"{frame['least']:.0f} ms ({frame['median']:.0f})"
 
 
 def ratio(frame, to):
@@ -104,7 +104,7 @@ def real(b):
         report = render(b.args, mesh, "--size", "1024x1024", *EXACT, "--threads", "2", "--repeat", b.args.repeat, *VERIFY)["frames"][0]
         times, segments = sorted(report["frame_ms"]), report["counters"]["segments"]
         b.section.row(f"{name}, cut into {report['counters']['tets_total']:,} tets, default view", ">= 300 Mseg/s",
-                      f"{segments / times[0] / 1e3:.0f} Mseg/s, {times[0]:.0f} ms (median {statistics.median(times):.0f}), {error(report)}")
+                      f"{segments / times[0] / 1e3:.0f} Mseg/s, {times[0]:.0f} ms ({statistics.median(times):.0f}), {error(report)}")
 
 
 def modes(b):
@@ -134,7 +134,7 @@ def main():
     for group in (cube, large, real, modes):
         if group.__name__ in args.only.split(","):
             group(b)
-    b.section.keep()
+    b.section.keep("least (median) times")
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ def main():
             times = "" if not cells else f"{median / base:.1f}x, "
             cells.append(f"{median:.0f} ({min(found['frame_ms']):.0f}), {times}{error(found['max_error'])}, {error(found['rms_error'])}")
         section.row(f"cube {n}, {1e-6 * frame['counters']['tets_total']:.2f} M tets", *cells)
-    section.keep("frame, median (least) [ms]; times the first renderer's median; maximum and RMS error",
+    section.keep("median (least) time of a frame [ms], its ratio to the first renderer's, maximum error, RMS error",
                  f"{section.made()} {build(args.tessera)}, kernels {frame['instruction_set']}, all cores.")
 
 

@@ -28,7 +28,7 @@ def main():
                                 *words, ranks=processes, picture="f%d.pfm")
                 frame = statistics.median(ms for frame in report["frames"][1:] for ms in frame["frame_ms"])
                 made.setdefault((film, way), []).append((frame, report["run"].cpu))
-    section.table("llrll", "film", "two processes", "a frame: one / two, ms", "ratio (range)", "CPU (range)")
+    section.table("llrll", "film", "distribution", "time of a frame with one / two processes, ms", "ratio (range)", "ratio of CPU time (range)")
     for film, degrees in FILMS.items():
         one = made[film, "one"]
         for way in list(WAYS)[1:]:
@@ -38,7 +38,7 @@ def main():
                 cells.append(f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})")
             both = " / ".join(f"{statistics.median(ms for ms, _ in runs):.0f}" for runs in (one, two))
             section.row(f"{film}, {degrees} degrees a frame", way, both, *cells)
-    section.keep(f"`ripples` of {SAMPLES}^3 by two processes, compared with one of two threads")
+    section.keep(f"`ripples` of {SAMPLES}^3 by two processes of one thread, compared with one process of two threads")
 
 
 if __name__ == "__main__":

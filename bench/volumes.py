@@ -34,7 +34,7 @@ def volumes(args):
 def main():
     args = options(__doc__, data=pathlib.Path, rounds=3, repeat=5, threads=2)
     section = Section(args)
-    section.table("lllllll", "volume", *(f"`{' '.join(method)}`" for method in METHODS), "VTK fixed point", "ns a voxel, 1e-4")
+    section.table("lllllll", "volume", *(f"`{' '.join(method)}`" for method in METHODS), "VTK fixed point", "ns per voxel, 1e-4")
     for name, path, words in volumes(args):
         times, reports, vtk = {method: [] for method in METHODS}, {}, []
         run(args.tessera, "convert", path, args.work / "samples.vti", "--quiet")
@@ -50,8 +50,8 @@ def main():
                  f"{error(reports[m]['frames'][0]['verify']['max_error'])}" for m in METHODS]
         each = 1e6 * min(times[METHODS[1]]) * args.threads / reports[METHODS[1]]["frames"][0]["counters"]["voxels_visited"]
         section.row(name, *cells, f"{min(vtk):.0f} ({statistics.median(vtk):.0f}), {error(found['max_error'])}", f"{each:.1f}")
-    section.keep("frame, least (median) [ms]; how many times as long VTK takes, by the least, in steps of one voxel; maximum error; ns a voxel visited at accuracy "
-                 "1e-4, in proportion to time for the others")
+    section.keep("least (median) time of a frame [ms], VTK's least time (with steps of one voxel) divided by ours, maximum error. The last column is ns per voxel "
+                 "visited at accuracy 1e-4; for the other methods it is proportional to time")
 
 
 if __name__ == "__main__":

@@ -210,19 +210,19 @@ def document(section, stresses, rows):
         still = [s for s in mine if all(map(steady, s["methods"].values()))]
         section.text(f"### {title}")
         if still:
-            section.text("These change no method's result: " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". The default's errors there "
-                         f"reach {largest('default', still)}, those of `exact` anywhere {largest('exact', mine)}.")
+            section.text("These stresses change no method's result (their parameters are in brackets): " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". In them, the default's "
+                         f"errors reach {largest('default', still)}; in all stresses of this section, those of `exact` reach {largest('exact', mine)}.")
         section.table("l" * (2 + len(methods)), "stress, parameter", "values", *methods)
         for s in mine:
             if s not in still:
                 section.row(f"{s['name']}: {s['parameter']}", values_of(s), *(words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods))
-    section.text("### The printed methods' own limits")
-    section.table("lll", "limit, parameter", "values", "what becomes of them")
+    section.text("### Limits of the published methods")
+    section.table("lll", "limit, parameter", "values", "largest errors")
     for s in stresses:
         if s["kind"] == "printed":
             section.row(f"{s['name']}: {s['parameter']}", values_of(s), "; ".join(f"{m}: {words_of(d)}" for m, d in s["methods"].items()))
     section.text("### Partitions over MPI")
-    section.text("Against one process with the whole mesh; `segments` promises its bits, `runs` 2e-6.")
+    section.text("The images are compared with that of one process with the whole mesh. `segments` promises the same bits, `runs` differences of at most 2e-6.")
     section.table("lll", "partitions (ranks)", "`segments`: the same bits", "`runs`: largest difference")
     alike = {}
     for r in rows:
@@ -266,7 +266,7 @@ def figure(path, stresses):
     """Small charts: error (logarithmic, 1e-9 and below at the bottom) by the parameter's values, in order; a cross at the
     top is a failure. Colours depend on the section."""
     columns, w, h, top, out = 4, 235, 150, 10, []
-    for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids"), ("printed", "The printed methods' own limits")):
+    for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids"), ("printed", "Limits of the published methods")):
         mine = [s for s in stresses if s["kind"] == kind]
         if not mine:
             continue
