@@ -42,7 +42,7 @@ def path(centre, radius):
 def main():
     args = options(__doc__, samples=400)
     trace, table, section = args.work / "trace.json", args.work / "trace.csv", Section(args, "figure 6.24")
-    section.table("l" + "r" * 8, "data, function", "visible bricks", *(f"{name} [ms]" for name in STAGES), "all", "rendering [%]")
+    section.table("l" + "r" * 8, "data, function", "visible / all bricks", *(f"{name} [ms]" for name in STAGES), "all", "rendering [%]")
     for name in ("head", "radial", "turbulence"):
         volume = generated(args, f"{name}-{args.samples}.nrrd", name, f"n={args.samples}", "bits=8")
         low, high = json.loads(run(args.tessera, "info", volume, "--json").out)["bounds"]
@@ -55,7 +55,7 @@ def main():
             rows = {row["stage"]: float(row["cpu_ms"] or 0) for row in csv.DictReader(table.read_text().splitlines()) if row["part"] == "frame"}
             cpu = {stage: sum(rows.get(part, 0) for part in parts) for stage, parts in STAGES.items()}
             shown = counters["bricks_total"] - counters["bricks_invisible"]
-            section.row(f"{name}, {function}", f"{shown} of {counters['bricks_total']}", *(f"{ms:.1f}" for ms in cpu.values()), f"{sum(cpu.values()):.1f}",
+            section.row(f"{name}, {function}", f"{shown} / {counters['bricks_total']}", *(f"{ms:.1f}" for ms in cpu.values()), f"{sum(cpu.values()):.1f}",
                         f"{100 * cpu['rendering'] / sum(cpu.values()):.0f}")
     section.keep()
 

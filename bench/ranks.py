@@ -41,7 +41,7 @@ def main():
         for i in range(2):
             ratios = [one[arrangement][i] / one[ONE][i] for one in rounds]
             middle = statistics.median(one[arrangement][i] for one in rounds)
-            cells.append(f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f}); {middle:.0f} ms")
+            cells.append(f"{statistics.median(ratios):.2f} ({min(ratios):.2f}-{max(ratios):.2f}); {middle:.0f} ms")
         section.row(arrangement, *cells)
     trace, table = args.work / "trace.json", args.work / "stages.csv"
     frames(ONE, args.repeat, "--timing", trace)

@@ -125,14 +125,14 @@ def cell(whole, parts):
     """A frame's milliseconds, the share of it that projection is, and the largest loss if it is more than 5 %."""
     share = {name: 100 * parts[name] / whole for name in PARTS}
     loss = max(PARTS[1:], key=share.get)
-    return f"{1e3 * whole:.0f} ms, {share['projection']:.0f} %" + (f", {loss} {share[loss]:.0f} %" if round(share[loss]) > 5 else "")
+    return f"{1e3 * whole:.0f}, {share['projection']:.0f} %" + (f", {loss} {share[loss]:.0f} %" if round(share[loss]) > 5 else "")
 
 
 def main():
     args = options(__doc__, sides="69,138", frames=4, jobs=1)
     section = Section(args)
     small, large = (base(args, int(side)) for side in args.sides.split(","))
-    section.table("rrr" + "l" * len(NODES), "cores per node", "Gbit/s", "tets", *(f"{nodes} nodes" for nodes in NODES))
+    section.table("rrr" + "l" * len(NODES), "cores per node", "Gbit/s", "tets", *(f"{nodes} nodes [ms]" for nodes in NODES))
     with multiprocessing.Pool(args.jobs) as pool:
         found = pool.imap(functools.partial(predicted, small, large, args.frames),
                           [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in NODES])

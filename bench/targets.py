@@ -70,7 +70,7 @@ def error(frame):
 
 def above_the_mesh(frame):
     """Bytes a tet of buffers, without 64 MiB."""
-    return f"{(frame['counters']['peak_buffer_bytes'] - (64 << 20)) / frame['counters']['tets_total']:.0f} B a tet + 64 MiB"
+    return f"{(frame['counters']['peak_buffer_bytes'] - (64 << 20)) / frame['counters']['tets_total']:.0f} B/tet + 64 MiB"
 
 
 VERIFY = ("--verify", "200")
@@ -87,7 +87,7 @@ def cube(b):
     row("cube 32", ">= 400 Mseg/s at 2e-5", f"{f['rate']:.0f} Mseg/s, {error(f)}")
     f = b.one(generated(b.args, "cube128.tets", "cube", "n=128"))
     row("cube 128, 12.6 M tets", "<= 300 ms", f"{ms(f)}, {f['rate']:.0f} Mseg/s")
-    row("memory above the mesh, cube 128", "<= 32 B a tet + 64 MiB", f"{above_the_mesh(f)} ({f['counters']['peak_buffer_bytes'] / 2**20:.0f} MiB in all)")
+    row("memory above the mesh, cube 128", "<= 32 B/tet + 64 MiB", f"{above_the_mesh(f)} ({f['counters']['peak_buffer_bytes'] / 2**20:.0f} MiB in all)")
     f = b.one(b.converted("delaunay.tets", written(b.args.work / "box.ply", BOX), "--max-volume", "1.55e-5"), *VERIFY)
     row(f"TetGen Delaunay, {f['counters']['tets_total']:,} tets", ">= 400 Mseg/s", f"{f['rate']:.0f} Mseg/s, {ms(f)}, {error(f)}")
 

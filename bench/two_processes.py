@@ -35,7 +35,7 @@ def main():
             two, cells = made[film, way], []
             for i in range(2):
                 ratios = [t[i] / o[i] for t, o in zip(two, one)]
-                cells.append(f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})")
+                cells.append(f"{statistics.median(ratios):.2f} ({min(ratios):.2f}-{max(ratios):.2f})")
             both = " / ".join(f"{statistics.median(ms for ms, _ in runs):.0f}" for runs in (one, two))
             section.row(f"{film}, {degrees} degrees a frame", way, both, *cells)
     section.keep(f"`ripples` of {SAMPLES}^3 by two processes of one thread, compared with one process of two threads")
