@@ -7,10 +7,10 @@
     figure 6.21  frames per second by the speed of a turn and of a zoom
     figure 6.22, 6.23  largest number of bricks that any unit loads in a frame, waited for and ahead; two turns around the x axis at three speeds
 
-Volumes are those of `tessera generate` that have the printed fraction of visible bricks, of 128 samples a side in bricks of 8: about as many bricks as printed,
-but small ones. Except for Table 6.2, units are threads of one process (cache_frames.cpp, in the build that --programs names) with their own caches and
-rectangles, 512 x 512 pixels, and the volume in memory; where stated, loading a brick takes them 0.57 ms, the printed transfer of 64^3 bytes to texture memory at
-458.5 MB/s. Limits of bricks loaded ahead are the printed ones, scaled by the ratio of visible bricks here to those printed. Steps along rays are eight samples
+Volumes are those of `tessera generate` that have the thesis's fraction of visible bricks, of 128 samples a side in bricks of 8: about as many bricks as in the
+thesis, but small ones. Except for Table 6.2, units are threads of one process (cache_frames.cpp, in the build that --programs names) with their own caches and
+rectangles, 512 x 512 pixels, and the volume in memory; where stated, loading a brick takes them 0.57 ms, the thesis's transfer of 64^3 bytes to texture memory at
+458.5 MB/s. Limits of bricks loaded ahead are those of the thesis, scaled by the ratio of visible bricks here to those there. Steps along rays are eight samples
 long, which does not affect loads (one where frames are timed), and the first frame, before which nothing is loaded, does not count.
 """
 import json
@@ -34,7 +34,7 @@ def frames_of(args, runs):
 
 
 def ahead(args, volume, printed, printed_bricks):
-    """A printed limit of bricks loaded ahead, in proportion to visible bricks."""
+    """A limit of bricks loaded ahead from the thesis, in proportion to visible bricks."""
     return round(printed * frames_of(args, [dict(volume=volume, frames=0)])[0]["visible"] / printed_bricks)
 
 

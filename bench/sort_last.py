@@ -3,7 +3,7 @@
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 6.6, 6.7 and 6.15: rays in one process, or in pieces.
 
     figure 6.15  sort-first and sort-last by number of processes, with and without early termination; bricks of 32^3, nothing culled, rotation about y,
-                 sort-first split by the previous frame as printed, and by our default
+                 sort-first split by the previous frame as in the thesis, and by our default
     figure 1.1   CPU time of the slowest process, relative to the mean, while a view moves into the volume
     figure 6.6   direct send, asynchronous and synchronous, by number of processes
     figure 6.7   asynchronous direct send of six processes by the image's size
