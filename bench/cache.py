@@ -9,7 +9,7 @@
 
 Volumes are those of `tessera generate` that have the thesis's fraction of visible bricks, of 128 samples a side in bricks of 8: about as many bricks as in the
 thesis, but small ones. Except for Table 6.2, units are threads of one process (cache_frames.cpp, in the build that --programs names) with their own caches and
-rectangles, 512 x 512 pixels, and the volume in memory; where stated, loading a brick takes them 0.57 ms, the thesis's transfer of 64^3 bytes to texture memory at
+rectangles, 512 x 512 pixels, and the volume in memory; where stated, loading a brick takes 0.57 ms, the thesis's transfer of 64^3 bytes to texture memory at
 458.5 MB/s. Limits of bricks loaded ahead are those of the thesis, scaled by the ratio of visible bricks here to those there. Steps along rays are eight samples
 long, which does not affect loads (one where frames are timed), and the first frame, before which nothing is loaded, does not count.
 """

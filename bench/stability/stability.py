@@ -217,6 +217,7 @@ def document(section, stresses, rows):
             if s not in still:
                 section.row(f"{s['name']}: {s['parameter']}", values_of(s), *(words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods))
     section.text("### Limits of the published methods")
+    section.text("Each row provokes one limit of a published method; the default is given for comparison.")
     section.table("lll", "limit, parameter", "values", "largest errors")
     for s in stresses:
         if s["kind"] == "printed":
