@@ -211,7 +211,7 @@ def document(section, stresses, rows):
         section.text(f"### {title}")
         if still:
             section.text("These stresses change no method's result (their parameters are in brackets): " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". In them, the default's "
-                         f"errors reach {largest('default', still)}; in all stresses of this section, those of `exact` reach {largest('exact', mine)}.")
+                         f"errors reach {largest('default', still)}; those of `exact` in this section reach {largest('exact', mine)}.")
         section.table("l" * (2 + len(methods)), "stress, parameter", "values", *methods)
         for s in mine:
             if s not in still:
