@@ -80,7 +80,6 @@ def table_5(args, section):
     for left_out, (cost, before) in PRINTED_5.items():
         here = [deviation(animated(args, "rotation", method, 0.5, left_out)) for method in ("backface", "learned", "previous")]
         section.row(left_out, here[0], cost, here[1], here[2], before)
-    return "deviation of CPU time [%], mean ± standard deviation over frames"
 
 
 MAPS = ("accurate", "backface", "splatting")
