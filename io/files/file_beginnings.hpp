@@ -6,16 +6,17 @@
 
 #include "io/files/format.hpp"
 
-/// Recognize formats by the first bytes of a file. No function returns true for a file of another format of the table.
+/// Functions that recognize formats by the first bytes of a file. No function returns true for a file of another format
+/// of the table.
 namespace tessera::io {
 
 inline constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
-/// The `type` of <VTKFile type="...">; otherwise empty.
+/// Returns the value of the attribute `type` in <VTKFile type="...">, or an empty text if there is none.
 std::string vtk_xml_type(std::string_view beginning);
 
-/// Whether a text begins like the Header of an AMReX plot file: a line without blanks, the number of fields, their
-/// names, and the dimensions.
+/// Whether a text begins like the Header of an AMReX plot file: a line without blanks, the number of fields, the names
+/// of the fields, and the number of dimensions.
 bool looks_like_amrex(std::string_view beginning);
 
 /// Whether a file begins like a DICOM file: any 128 bytes, then DICM.
@@ -28,11 +29,10 @@ bool begins_as_medit_binary(std::string_view beginning);
 /// Whether a file begins like a Medit mesh in text form (.mesh).
 bool begins_as_medit_text(std::string_view beginning);
 
-/// For VTK XML: throws Error(bad_input) for a file in UTF-16, in which the other functions would not find their
-/// keywords.
+/// Throws Error(bad_input) for a VTK XML file in UTF-16, in which the other functions would not find their keywords.
 void require_no_utf16(std::string_view beginning, const std::string& source);
 
-/// The word after DATASET of a legacy VTK file; otherwise empty.
+/// Returns the word after DATASET of a legacy VTK file, or an empty text if there is none.
 std::string vtk_legacy_type(std::string_view beginning);
 
 bool begins_as_vtu(const FileBeginning& file);
@@ -77,7 +77,8 @@ bool begins_as_dicom(const FileBeginning& file);
 bool begins_as_analyze(const FileBeginning& file);
 bool begins_as_xdmf(const FileBeginning& file);
 
-// Recognized in order to refuse it: binary Tecplot files are not read.
+// Whether a file begins like a binary Tecplot file. The format is recognized only so that an error can name it: binary
+// Tecplot files are not read.
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);
 bool begins_as_mfem(const FileBeginning& file);

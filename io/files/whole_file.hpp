@@ -8,11 +8,11 @@
 
 namespace tessera::io {
 
-/// A whole file in memory, for text files and others that are read completely. Throws like open_input (input_file.hpp),
-/// or Error(system_failure) if the file is shortened while it is read.
+/// A whole file in memory: a text file, or another file that is read completely. Throws like open_input
+/// (input_file.hpp), and Error(system_failure) if the file is shortened while it is read.
 ///
-/// The file is read, not mapped: if another program shortened a mapped file, this process would end with SIGBUS at any
-/// later time.
+/// The file is read, not mapped: if another program shortened a mapped file, this process would end with SIGBUS at an
+/// unpredictable later time.
 class WholeFile {
  public:
   explicit WholeFile(const std::filesystem::path& file);

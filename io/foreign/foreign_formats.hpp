@@ -8,12 +8,12 @@
 #include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_reader.hpp"
 
-/// Functions named by the rows of the table of formats for files that the reader programs read, as meshes and as
-/// volumes. Some formats contain either; only their libraries can determine which. All throw missing_reader() if the
-/// program is not installed.
+/// Functions named by rows of the table of formats, for files that the reader programs read: as meshes and as volumes.
+/// Some formats contain either, and only the formats' libraries can determine which. All functions throw
+/// missing_reader() if the program is not installed.
 namespace tessera::io {
 
-/// The name of a reader in a program's main file under readers/, as a template argument.
+/// The name of a reader, as a template argument. The names are defined in the programs' main files under readers/.
 struct ReaderName {
   template <std::size_t n>
   consteval ReaderName(const char (&name)[n]) {  // NOLINT(google-explicit-constructor): a literal stands for it
@@ -26,21 +26,21 @@ struct ReaderName {
 struct ForeignReader {
   Reader program;
   const char* name;
-  const char* remedy = nullptr;  ///< null: the same as for other files
+  const char* remedy = nullptr;  ///< null: the remedy for other files
 };
 
-/// All blocks and arrays of one time step, by default the last; grids become hexahedra.
+/// Reads all blocks and arrays of one time step, by default the last. Grids become hexahedra.
 cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const MeshOptions& options);
 
-/// Opens the file as a volume. Throws Error(bad_input) for a mesh, and for a file that has the format only by its name,
-/// except DICOM, whose files may lack the DICM mark.
+/// Opens the file as a volume. Throws Error(bad_input) for a mesh, and for a file that only its name identifies. DICOM
+/// files are opened even then, because they may lack the DICM mark.
 VolumeFile read_foreign_volume(const InputFile& file, const ForeignReader& by, const VolumeOptions& options);
 
-/// Whether the file contains exactly one regular or rectilinear grid and so is a volume; the helper inspects its
-/// header. Also false if it cannot be read: opening it then reports why.
+/// Whether the file contains exactly one regular or rectilinear grid and so is a volume. The helper inspects the file's
+/// header. Also false if the helper cannot read the file: opening it then reports why.
 bool holds_one_grid(const InputFile& file, const ForeignReader& by);
 
-/// The time steps that the helper finds when it opens a mesh.
+/// Returns the time steps that the helper finds when it opens a mesh.
 scene::TimeStepRead foreign_time_steps(const InputFile& file, const ForeignReader& by, const MeshOptions& options);
 
 template <Reader program, ReaderName name>
@@ -60,36 +60,38 @@ scene::TimeStepRead steps_by(const InputFile& file, const MeshOptions& options) 
   return foreign_time_steps(file, {program, name.text}, options);
 }
 
-/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). Each piece of a .pvtu becomes a
-/// block; their points are not merged.
+/// Reads VTK's XML files (.vtu .pvtu .vts .pvts .vtr .pvtr) and lists of them (.vtm .vtpc). Each piece of a .pvtu
+/// becomes a block; the points of pieces are not merged.
 cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options);
 
-/// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, with all arrays.
+/// Reads legacy .vtk files of unstructured, structured and rectilinear grids, ASCII or binary, with all arrays.
 cells::MeshBlocks read_vtk_legacy(const InputFile& file, const MeshOptions& options);
 
-/// .vti .pvti .vtr .pvtr, and legacy .vtk of grids: in place, in this process or by VTK.
+/// Opens .vti .pvti .vtr .pvtr, and legacy .vtk of grids: in place, by parsing in this process, or by VTK.
 VolumeFile open_vtk_grid(const InputFile& file, const VolumeOptions& options);
 
-/// Exodus II: all element blocks, nodal and element variables at one time step (default: the last). Nodes keep their
-/// original positions (cells/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
+/// Reads Exodus II: all element blocks, and the nodal and element variables at one time step (default: the last). Nodes
+/// keep their original positions (cells/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
 cells::MeshBlocks read_exodus(const InputFile& file, const MeshOptions& options);
 scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& options);
 
-/// HDF5; the content determines the kind.
+/// Reads HDF5. The content of the file determines which kind of HDF5 file it is.
 cells::MeshBlocks read_hdf5(const InputFile& file, const MeshOptions& options);
 
-/// Files of solvers. VTK's readers do not check the content of other files with these names, so this is checked here.
+/// Readers of files of solvers. VTK's readers do not detect that another kind of file has one of these names, so these
+/// functions check the content.
 cells::MeshBlocks read_openfoam(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_gambit(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_avs_ucd(const InputFile& file, const MeshOptions& options);
 
-/// PLOT3D grid and solution; the binary layout is deduced from the file's size. If `plot3d_q` is empty, the solution is
-/// searched for next to the grid, by its name; without one the mesh has no field. IBLANK 0 hides the cells of a point.
+/// Reads a PLOT3D grid and solution. The binary layout is deduced from the size of the file. If `plot3d_q` is empty,
+/// the solution is the file next to the grid with a matching name; if there is none, the mesh has no field. IBLANK 0 at
+/// a point hides the cells that use the point.
 cells::MeshBlocks read_plot3d(const InputFile& file, const MeshOptions& options);
 
-/// The same for one time step of ParaView's list of such files (.p3d, plot3d_list.hpp), by default the last. `plot3d_q`
+/// Reads one time step, by default the last, of ParaView's list of PLOT3D files (.p3d, plot3d_list.hpp). `plot3d_q`
 /// replaces the solution that the list names.
 cells::MeshBlocks read_plot3d_list(const InputFile& file, const MeshOptions& options);
 scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const MeshOptions& options);

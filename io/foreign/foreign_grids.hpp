@@ -7,8 +7,9 @@
 
 namespace tessera::io {
 
-/// The only part of a file, an image or a rectilinear grid, as a volume in memory; rectilinear grids that are uniform
-/// up to rounding become regular. Throws Error(bad_input) for other parts and for fields that do not fit.
+/// Converts the only part of a file, an image or a rectilinear grid, to a volume in memory. Rectilinear grids that are
+/// uniform up to rounding become regular. Throws Error(bad_input) for other parts and for fields whose size does not
+/// match the grid.
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options);
 
 }  // namespace tessera::io

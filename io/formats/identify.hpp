@@ -9,12 +9,12 @@
 
 namespace tessera::io {
 
-/// The table of formats. A file has the format of the first row that recognizes it.
+/// The table of formats. The format of a file is the first row that recognizes the file.
 std::span<const Format> formats();
 
-/// Opens a file once and identifies its format: by its first bytes; for a container (Container) by its name; if neither
-/// decides, by its name alone. A directory is an OpenFOAM case, an AMReX plot file or a set of DICOM files. Throws like
-/// require_file.
+/// Opens a file once and identifies its format by the first bytes. If these show only a container (Container), the name
+/// determines the format; if they show nothing, the name alone decides. A directory is an OpenFOAM case, an AMReX plot
+/// file or a set of DICOM files. Throws like require_file.
 InputFile identify(const std::filesystem::path& file);
 
 /// Identifies a file that does not exist, by its name alone.

@@ -10,20 +10,21 @@
 
 namespace tessera::io {
 
-/// Rows of an image as integers of display values, as in .png, .jpg, .tif and films: straight alpha, sRGB if `options`
-/// selects it, composited over the background. Callable from any thread.
+/// Rows of an image as integers of display values, as written to .png, .jpg, .tif and films: straight alpha,
+/// sRGB-encoded if `options` selects that, composited over the background. Callable from any thread.
 class DisplayRows {
  public:
   enum class Order : std::uint8_t { little, big };  ///< byte order of 16-bit values
 
-  /// With four channels the last is alpha; with three there should be a background, otherwise the image is composited
-  /// over black, as in .pfm. Keeps references to all three. Errors name `file`.
+  /// Keeps references to `image`, `file` and `options`; errors name `file`. With four channels the last is alpha. With
+  /// three channels there should be a background; otherwise the image is composited over black, as in .pfm.
   DisplayRows(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options,
               int channels, Order order = Order::big);
 
   [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }
 
-  /// Writes row `y` to row_bytes() bytes; `rgba` is scratch memory that is reused. Throws like composited_row().
+  /// Writes row `y`, row_bytes() bytes, to `out`. `rgba` is scratch memory that is reused. Throws like
+  /// composited_row().
   void row(int y, std::vector<float>& rgba, std::uint8_t* out) const;
 
  private:
@@ -38,7 +39,7 @@ class DisplayRows {
   std::size_t row_bytes_;
 };
 
-/// The integer 0..255 for the display value of linear light, clamped to 0..1: lround(255 encode_srgb(linear)), computed
+/// Returns the integer 0..255 that displays linear light, clamped to 0..1: lround(255 encode_srgb(linear)), computed
 /// without a power function.
 std::uint8_t srgb_code(double linear);
 

@@ -11,7 +11,7 @@
 
 namespace tessera::io {
 
-/// Lets OpenEXR write into an AtomicFile.
+/// A stream that lets OpenEXR write into an AtomicFile.
 class ExrStream : public Imf::OStream {
  public:
   ExrStream(system::AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
@@ -22,8 +22,8 @@ class ExrStream : public Imf::OStream {
   void seekp(std::uint64_t position) override {
     keep([&] { file_.seek(position); });
   }
-  /// Throws the error of a failed write again: OpenEXR writes its table of lines in a destructor, which swallows
-  /// exceptions.
+  /// Throws the error of a failed write again. Needed because OpenEXR writes its table of lines in a destructor, which
+  /// discards exceptions.
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }

@@ -14,19 +14,19 @@ namespace tessera::io {
 
 using tessera::ImageFileOptions;
 
-/// tessera::write_image().
+/// Implements tessera::write_image().
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 
-/// tessera::png_bytes(), exr_bytes() and jpeg_bytes().
+/// Implement tessera::png_bytes(), exr_bytes() and jpeg_bytes().
 std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options);
 std::vector<std::byte> checked_exr_bytes(const scene::Image& image, const ImageFileOptions& options);
 std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const ImageFileOptions& options);
 
-/// tessera::read_image().
+/// Implements tessera::read_image().
 scene::Image read_image(const std::filesystem::path& file);
 
-/// Throws Error(bad_input) unless write_image supports the extension and could create this file now: its directory
-/// exists and is writable, and the name is not that of a directory or device. To be called before any rendering.
+/// Throws Error(bad_input) unless write_image supports the extension and could create this file now: the directory
+/// exists and is writable, and the name is not that of a directory or device. Should be called before any rendering.
 void check_image_path(const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -9,8 +9,8 @@
 
 namespace tessera::io {
 
-// One function per format; image_file.cpp chooses by extension and has checked the image's sizes. `row` below is a row
-// of the image composited over the background, as every writer takes it.
+// One writer per format. image_file.cpp chooses the writer by extension, after checking the sizes of the image. Every
+// writer gets its rows from composited_row().
 
 void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 void write_png(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
@@ -27,8 +27,8 @@ bool has_tiff();
 scene::Image read_exr(const std::filesystem::path& file);
 scene::Image read_pfm(const std::filesystem::path& file);
 
-/// Row `y` as the file stores it: 4 floats a pixel, premultiplied, composited over the background. Throws
-/// Error(system_failure) for a NaN or infinite component or a NaN depth, naming file and pixel.
+/// Computes row `y` as the file stores it: 4 floats per pixel, premultiplied, composited over the background. Throws
+/// Error(system_failure) for a NaN or infinite component or a NaN depth; the message names file and pixel.
 void composited_row(const scene::Image& image, int y, const ImageFileOptions& options,
                     const std::filesystem::path& file, float* rgba);
 

@@ -10,31 +10,34 @@
 
 namespace tessera::io {
 
-/// A data set in a file of its own, listed in a VTK file: a piece of a .pvtu, or a block of a .vtm or .vtpc.
+/// A data set in a file of its own that a VTK file lists: a piece of a .pvtu, or a block of a .vtm or .vtpc.
 struct ListedPiece {
   std::filesystem::path file;
   std::string list;   ///< the file that lists it
-  std::string block;  ///< path of block names down to its own; empty: a piece of one data set
-  std::string type;   ///< type of its file, if that was inspected
+  std::string block;  ///< block names from the root of the list to this block; empty: a piece of one data set
+  std::string type;   ///< type of the data set's file, if it was inspected
 };
 
 struct PieceList {
-  std::vector<ListedPiece> pieces;                             ///< in file order; the volumes of the chosen blocks
+  std::vector<ListedPiece> pieces;                             ///< in file order; only blocks of the choice, and
+                                                               ///< surfaces only if requested
   std::vector<std::string> block_names, surface_names, notes;  ///< surface_names: surfaces that are left out
   std::string format;                                          ///< description
   bool with_surfaces = false;                                  ///< the chosen blocks may be surfaces
   const Format* of = nullptr;                                  ///< format of the list
 };
 
-/// Whether a file that begins like VTK XML is an unstructured grid in pieces or a list of blocks, whatever its name.
+/// Whether a file that begins like VTK XML is an unstructured grid in pieces or a list of blocks, regardless of the
+/// name.
 bool lists_pieces(const InputFile& file);
 
-/// The pieces of such a file. Relative paths are resolved against its directory. Files of a .pvtu need not exist; files
-/// of blocks are inspected, because surfaces are left out unless `with_surfaces`. Throws Error(bad_input).
+/// Returns the pieces of a file that lists_pieces() accepts. Relative paths are resolved against the directory of the
+/// file. The files that a .pvtu lists need not exist. The files of blocks are inspected, because surfaces are left out
+/// unless `with_surfaces` is set. Throws Error(bad_input).
 PieceList piece_list(const InputFile& file, const cells::BlockChoice& choice, bool with_surfaces = false);
 
-/// Reads pieces [first, last) of a list. Pieces of one data set become a block each, whose `source` is the piece's
-/// file; regular grids become hexahedra. Throws Error(bad_input) that names the piece at fault.
+/// Reads pieces [first, last) of a list. Each piece of a data set becomes a block whose `source` is the piece's file;
+/// regular grids become hexahedra. Throws Error(bad_input) that names the piece at fault.
 cells::MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
                               const ReadProgressFunction& progress = {});
 

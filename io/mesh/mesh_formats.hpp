@@ -6,8 +6,8 @@
 #include "io/mesh/mesh_options.hpp"
 #include "io/mesh/triangle_file.hpp"
 
-/// Readers of mesh files that the rows of the table of formats (io/formats/format_table.cpp) name. Those that need a
-/// reader program throw missing_reader() if it is not installed.
+/// Readers of mesh files, named by rows of the table of formats (io/formats/format_table.cpp). Readers that need a
+/// reader program throw missing_reader() if the program is not installed.
 namespace tessera::io {
 
 struct ForeignFile;
@@ -20,15 +20,15 @@ cells::MeshBlocks read_su2(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_tecplot(const InputFile& file, const MeshOptions& options);
 scene::TimeStepRead tecplot_time_steps(const InputFile& file, const MeshOptions& options);
 
-/// The tets of a .tets file, with their field "scalar".
+/// Reads the tets of a .tets file, with the file's field "scalar".
 cells::MeshBlocks read_tets(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 
-/// TetGen's mesh; the name of either file finds the other.
+/// Reads TetGen's mesh, given either of its files; the name of one file determines the other.
 cells::MeshBlocks read_node_ele(const InputFile& file, const MeshOptions& options);
 
-/// Meshes with refinement levels. Cells covered by finer ones are left out; only the chosen field is read. Cell data
-/// become voxels; point data, and cell data with `smooth`, become cells that connect across levels
+/// Reads a mesh with refinement levels. Cells covered by finer cells are left out; only the chosen field is read. Cell
+/// data become voxels; point data, and cell data with `smooth`, become cells that connect across levels
 /// (cells/amr/amr_cells.hpp).
 cells::MeshBlocks read_amr_list(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_hyper_trees(const InputFile& file, const MeshOptions& options);
@@ -38,14 +38,14 @@ cells::MeshBlocks read_enzo(const InputFile& file, const MeshOptions& options);
 /// Like read_amr_list(), for a file whose reader reported refinement levels (ForeignContents::has_levels).
 cells::MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options);
 
-/// Surfaces as stored in their files. Each triangle of an STL file has its own points.
+/// Readers of surfaces as stored in their files. Each triangle of an STL file has its own points.
 SurfaceFile read_stl_surface(const InputFile& file);
 SurfaceFile read_vtk_surface_file(const InputFile& file);
 SurfaceFile read_ply_surface(const InputFile& file);
 SurfaceFile read_tetgen_surface(const InputFile& file);
 
-/// A surface filled by TetGen with tets of at most `max_volume`, by default 1/30,000 of the enclosed volume. Point
-/// fields: the file's own attributes, then "depth", the distance to the surface in world units.
+/// Reads a surface and fills it by TetGen with tets of at most `max_volume`, by default 1/30,000 of the enclosed
+/// volume. Point fields: the attributes of the file, then "depth", the distance to the surface in world units.
 cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& options);
 
 }  // namespace tessera::io

@@ -7,7 +7,7 @@ namespace tessera::io {
 
 /// Options for reading a mesh file.
 struct MeshOptions : ReadOptions {
-  bool surfaces = false;  ///< also read and name blocks of faces, patches and side sets
+  bool surfaces = false;  ///< also read faces, patches and side sets as blocks, and list their names
 };
 
 }  // namespace tessera::io

@@ -19,31 +19,32 @@ namespace tessera::io {
 /// Does not apply `options.selection` (cells::select). `options.trace` and `threads` are the caller's.
 cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {});
 
-/// Reads several files as the pieces of one mesh; their points are not merged. Each must have the chosen field. Throws
-/// like read_mesh.
+/// Reads several files as the pieces of one mesh; their points are not merged. Each file must have the chosen field.
+/// Throws like read_mesh.
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options = {});
 
 /// The cells of a file's chosen blocks before they are split, and the names of all its blocks. Throws like read_mesh,
 /// but not if there are no cells, and an unknown block's error may quote arbitrary bytes of the file's name.
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options);
 
-/// The time steps of a mesh file and their times; skips its numbers if the format stores them separately. Throws like
-/// read_mesh.
+/// Returns the number of time steps of a mesh file and their times. Does not read the mesh if the format stores the
+/// times separately. Throws like read_mesh.
 scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions& options = {});
 
-/// Whether read_mesh supports the format. Rectilinear grids are volumes too.
+/// Whether read_mesh supports the format. True for rectilinear grids, too, although they are volumes as well.
 bool is_mesh(const InputFile& file);
 
 /// Throws Error(bad_input) for a file that is not a mesh: its format is unknown, not supported, or that of a grid.
 void require_mesh(const InputFile& file);
 
-/// Writes a .tets file: float32 coordinates and point scalars, so doubles are rounded. Appears by rename. Throws
-/// Error(bad_input) for cell data, more than 2^31 - 1 points or values beyond float's range, Error(system_failure) if
-/// writing fails.
+/// Writes a .tets file with coordinates and point scalars as float32; doubles are rounded. The file appears by rename.
+/// Throws Error(bad_input) for cell data, more than 2^31 - 1 points or values beyond float's range,
+/// Error(system_failure) if writing fails.
 void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 
-/// Writes a VTK XML unstructured grid, appended raw data with zlib, double coordinates and scalars; adds a cell array
-/// "OriginalCellId" if tets were split from other cells. Appears by rename. Throws Error(system_failure).
+/// Writes a VTK XML unstructured grid: appended raw data compressed by zlib, with double coordinates and scalars. Adds
+/// a cell array "OriginalCellId" if tets were split from other cells. The file appears by rename. Throws
+/// Error(system_failure).
 void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 
 }  // namespace tessera::io

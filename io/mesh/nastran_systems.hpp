@@ -24,8 +24,8 @@ class NastranSystems {
   /// Adds an entry that is_used() accepts.
   void add(const NastranEntry& entry);
 
-  /// Call after all entries: computes the positions of the points. Throws Error(bad_input) naming `source` for a system
-  /// that is missing, unsupported, degenerate, or defined by itself.
+  /// Computes the positions of the points; must be called after all entries have been added. Throws Error(bad_input)
+  /// naming `source` for a coordinate system that is missing, unsupported, degenerate, or defined by itself.
   void place_points(const std::string& source);
 
   /// The index of a point in positions(); no value if the deck does not contain it.
@@ -43,10 +43,10 @@ class NastranSystems {
   };
   struct System {
     Kind kind = Kind::rectangular;
-    bool of_points = false;  ///< defined by three points, whose ids are in `points`
+    bool of_points = false;  ///< the system is defined by three points, whose ids are in `points`
     std::array<std::int64_t, 3> points{};
-    std::int64_t reference = 0;           ///< the system in which the three corners are given
-    std::array<glm::dvec3, 3> corners{};  ///< origin, on the z axis, in the xz plane
+    std::int64_t reference = 0;           ///< the system in which the three points of `corners` are given
+    std::array<glm::dvec3, 3> corners{};  ///< origin, a point on the z axis, a point in the xz plane
     glm::dvec3 origin{};
     glm::dmat3 axes{1};
     Progress progress = Progress::none;
@@ -60,7 +60,7 @@ class NastranSystems {
 
   std::vector<Point> points_;  ///< sorted by id once all are added
   std::map<std::int64_t, System> systems_;
-  std::map<std::int64_t, std::string> unread_;  ///< unsupported systems, with their entry names
+  std::map<std::int64_t, std::string> unread_;  ///< unsupported systems and the names of their entries
   std::int64_t default_system_ = 0;
   std::vector<glm::dvec3> positions_;
   std::string source_;

@@ -9,15 +9,15 @@
 
 namespace tessera::io {
 
-/// PLOT3D as text: the same numbers as in binary files, separated by blanks. All are checked, because VTK's reader
-/// would replace an invalid number by the last value it read. Both functions throw Error(bad_input) with the line at
-/// fault.
+/// PLOT3D as text: the same numbers as in binary files, separated by blanks. All numbers are checked, because VTK's
+/// reader would replace an invalid number by the number before it. Both functions throw Error(bad_input) with the line
+/// at fault.
 
-/// The only layout whose count of numbers matches the text; no value if there is none.
+/// Returns the layout whose count of numbers matches the text; no value if there is none.
 std::optional<Plot3dLayout> plot3d_text_layout(std::string_view text, const std::string& source);
 
-/// Throws unless a solution has the layout's dimensions and at least 4 + 5 n numbers per grid. Returns how many numbers
-/// follow them.
+/// Throws unless a solution has the layout's dimensions and at least 4 + 5 n numbers per grid. Returns how many further
+/// numbers the text contains.
 std::uint64_t check_plot3d_text_solution(std::string_view text, const Plot3dLayout& layout, const std::string& source);
 
 }  // namespace tessera::io

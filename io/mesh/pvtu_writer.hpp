@@ -9,18 +9,18 @@
 
 namespace tessera::io {
 
-/// Name of a piece, next to its .pvtu: OUT_0003.vtu of OUT.pvtu.
+/// Returns the name of a piece, next to its .pvtu: OUT_0003.vtu for OUT.pvtu.
 std::filesystem::path pvtu_piece_name(const std::filesystem::path& file, int piece);
 
-/// Writes a mesh in pieces: each a .vtu like write_vtu's, and the .pvtu that lists them. There are no ghost cells; a
-/// piece may have no tets.
+/// Writes a mesh in pieces: each piece as a .vtu file like those of write_vtu, and a .pvtu that lists the files. There
+/// are no ghost cells. A piece may have no tets.
 ///
-/// Pieces have temporary names until commit(), which renames them and then the .pvtu, so that a reader never finds a
-/// list of missing pieces. Without commit(), or if it fails, the writer removes all of its files; a process that is
-/// killed leaves hidden `.tessera-...` files.
+/// Pieces have temporary names until commit(), which renames them and then the .pvtu, so that a program never finds a
+/// list of missing pieces. Unless commit() succeeds, the writer removes all of its files; a process that is killed
+/// leaves hidden `.tessera-...` files.
 class PvtuWriter {
  public:
-  /// `like` supplies the field's name and association, and whether original cells are numbered.
+  /// `like` supplies the name and association of the field, and determines whether original cells are numbered.
   PvtuWriter(std::filesystem::path file, const scene::TetMeshView& like);
   ~PvtuWriter();
   PvtuWriter(const PvtuWriter&) = delete;
@@ -34,7 +34,7 @@ class PvtuWriter {
   [[nodiscard]] std::string list() const;
 
   std::filesystem::path file_;
-  std::string arrays_;                            ///< arrays of all pieces, as XML
+  std::string arrays_;                            ///< declarations of the arrays of all pieces, as XML
   std::vector<std::filesystem::path> left_over_;  ///< files to remove unless commit() succeeds
   int pieces_ = 0;
 };

@@ -14,18 +14,19 @@ namespace tessera::io {
 /// Cell type of a Tecplot zone.
 enum class TecplotZoneType : std::uint8_t { ordered, lines_or_faces, tetrahedra, bricks, polyhedra };
 
-/// The record of a zone in a Tecplot text file, without its numbers, which begin at `numbers_at`. Zones and variables
-/// count from 0.
+/// The record of a zone in a Tecplot text file, without the zone's numbers, which begin at `numbers_at`. Zones and
+/// variables are numbered from 0.
 struct TecplotZone {
   std::string name;
   std::size_t record_at = 0, numbers_at = 0, end = 0;
   TecplotZoneType type = TecplotZoneType::ordered;
-  std::size_t i = 1, j = 1, k = 1;                                 ///< of ordered zones
-  std::size_t nodes = 0, elements = 0, faces = 0, face_nodes = 0;  ///< nodes and elements also for ordered zones
-  std::optional<bool> by_point;                                    ///< the packing, if the record states it
+  std::size_t i = 1, j = 1, k = 1;                                 ///< dimensions of an ordered zone
+  std::size_t nodes = 0, elements = 0, faces = 0, face_nodes = 0;  ///< ordered zones have nodes and elements, too
+  std::optional<bool> by_point;                                    ///< whether values are packed by points; no value if
+                                                                   ///< the record does not state it
   std::vector<bool> of_cells, is_passive;                          ///< per variable
-  std::map<std::size_t, std::size_t> shared_from;                  ///< variable -> the zone whose values it shares
-  std::optional<std::size_t> connectivity_from;                    ///< the zone whose elements it shares
+  std::map<std::size_t, std::size_t> shared_from;                  ///< variable -> the zone whose values are shared
+  std::optional<std::size_t> connectivity_from;                    ///< another zone whose elements this zone shares
   std::optional<std::int64_t> strand;
   std::optional<double> time;
 };
@@ -36,8 +37,8 @@ struct TecplotHeader {
 };
 
 /// Parses the variables and zones of a Tecplot text file; texts, geometries and auxiliary data are skipped. Throws
-/// Error(bad_input) with file, line and remedy, also for unsupported records. The text is long enough for the returned
-/// numbers of points and elements.
+/// Error(bad_input) with file, line and remedy, also for unsupported records. Checks that the text is long enough for
+/// the numbers of points and elements in the result.
 ///
 /// Source  Tecplot, Inc., "Data Format Guide", chapter "ASCII Data".
 TecplotHeader parse_tecplot_header(std::string_view text, const std::string& source);

@@ -11,11 +11,12 @@
 
 namespace tessera::io {
 
-/// The numbers stored in a zone itself; those shared from other zones are empty.
+/// The numbers that are stored in a zone itself. Arrays that the zone shares from other zones are empty.
 struct TecplotNumbers {
   std::vector<std::vector<double>> values;                       ///< per variable, for each node or element
-  std::vector<std::size_t> connectivity;                         ///< nodes from 1, 4 or 8 per element
-  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra; from 1, 0 means none
+  std::vector<std::size_t> connectivity;                         ///< node numbers, counted from 1: 4 or 8 per element
+  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< faces of polyhedra; numbers from 1, and 0 means
+                                                                 ///< none
 };
 
 /// Reads a zone's numbers. Throws Error(bad_input) with file, line and remedy.

@@ -10,11 +10,12 @@
 
 namespace tessera::io {
 
-/// A surface as stored in its file. Points at the same position are merged if the format cannot share points.
+/// A surface as stored in its file. Points at the same position are merged if the format cannot share points between
+/// faces.
 struct SurfaceFile {
   cells::Surface surface{};
   std::vector<std::string> attribute_names{}, notes{};
-  const char* words = "";  ///< description of its format
+  const char* words = "";  ///< description of the file's format
 };
 
 /// Implements tessera::read_triangles().

@@ -10,17 +10,17 @@
 
 namespace tessera::io {
 
-/// Collects the words of one view, independently of the format, and checks that they define one.
+/// Collects the words of one view, independently of the format of the file, and checks that they define a view.
 class CameraWords {
  public:
-  /// `place` begins every message: the file and the position of the view in it.
+  /// `place` begins every message: the file and the position of the view in the file.
   explicit CameraWords(std::string place) : place_(std::move(place)) {}
 
-  /// Throws Error(bad_input, "AT: ...") for an unknown or repeated word, or a wrong count of numbers.
+  /// Throws Error(bad_input, "AT: ...") for an unknown or repeated word, or for a wrong count of numbers.
   void set(std::string_view word, std::span<const double> numbers, const std::string& at);
 
-  /// The view. Throws Error(bad_input) if a word is missing, if both or neither of parallel_scale and view_angle are
-  /// given, or if scene::validate refuses it.
+  /// Returns the view. Throws Error(bad_input) if a word is missing, if both or neither of parallel_scale and
+  /// view_angle are given, or if scene::validate refuses the view.
   [[nodiscard]] CameraFile finish() const;
 
  private:

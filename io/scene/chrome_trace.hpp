@@ -15,16 +15,16 @@ namespace tessera::io {
 
 using tessera::TraceRun;
 
-/// One rank's events as the text of a JSON array, which ranks can send to the rank that writes the file.
+/// Converts the events of one rank to the text of a JSON array, which ranks can send to the rank that writes the file.
 ///
-/// `process_name` is the role: `rank 3 projector`, `rank 0 projector + compositor`; the host's name is added as a
-/// label. `offset_us` is added to this rank's times: rank 0's clock minus this one's. Includes all roles in the
-/// recording.
+/// `process_name` describes the rank's roles: `rank 3 projector`, `rank 0 projector + compositor`; the name of the host
+/// is added as a label. `offset_us` is added to this rank's times: rank 0's clock minus this rank's clock. The text
+/// contains the events of all roles in the recording.
 std::string chrome_trace_events(const scene::Trace& trace, int rank, const std::string& process_name,
                                 double offset_us = 0);
 
-/// Writes the trace of a run from its ranks' events; an empty text represents a rank that sent none. The file appears
-/// by rename. Throws like AtomicFile.
+/// Writes the trace of a run from the events of its ranks. An empty text represents a rank that sent no events. The
+/// file appears by rename. Throws like AtomicFile.
 void write_chrome_trace(std::span<const std::string> events_of_ranks, const TraceRun& run,
                         const std::filesystem::path& file);
 

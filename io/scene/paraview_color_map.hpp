@@ -22,7 +22,7 @@ namespace tessera::io {
 colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
                                                            const colormaps::TransferFunctionOptions& options);
 
-/// The same for parsed JSON.
+/// Like parse_paraview_color_map(), for JSON that is already parsed.
 colormaps::LoadedTransferFunction color_map_of(const nlohmann::json& root, const std::string& source,
                                                const colormaps::TransferFunctionOptions& options);
 

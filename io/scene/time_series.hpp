@@ -13,13 +13,13 @@ using tessera::is_time_series;
 using tessera::read_time_series;
 using tessera::TimeStep;
 
-/// Throws Error(bad_input) unless the input exists: a file, or at least one step of a time series. Called before errors
-/// that would be misleading for a missing file, such as that it is a mesh.
+/// Throws Error(bad_input) unless the input exists: a file, or at least one step of a time series. Called first,
+/// because for a missing file other errors would mislead, for example that the file is a mesh.
 void require_input(const std::filesystem::path& input);
 
-/// Parses a ParaView file series, {"file-series-version", "files": [{"name", "time"}, ...]}, and sorts it by time;
-/// names are relative to the directory of `input`. The time of an entry without one is its index. Entries with equal
-/// times remain separate steps. Throws Error(bad_input).
+/// Parses a ParaView file series, {"file-series-version", "files": [{"name", "time"}, ...]}, and sorts the entries by
+/// time. Names are relative to the directory of `input`. The time of an entry that does not state it is the entry's
+/// index. Entries with equal times remain separate steps. Throws Error(bad_input).
 std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesystem::path& input);
 
 }  // namespace tessera::io

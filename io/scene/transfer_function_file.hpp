@@ -8,15 +8,17 @@
 
 namespace tessera::io {
 
-/// Loads a preset (`NAME` or `NAME:VARIANT`, see colormaps/presets.hpp), a JSON text (is_json_text()) or a file: JSON
-/// (json_transfer_function.hpp) if it begins with `[` or `{`, plain text otherwise. A preset takes precedence over a
-/// file of the same name; `./viridis` is the file. Throws Error(bad_input) in one line naming file, line and remedy.
+/// Loads a preset (`NAME` or `NAME:VARIANT`, see colormaps/presets.hpp), a JSON text (is_json_text()) or a file. A file
+/// that begins with `[` or `{` is JSON (json_transfer_function.hpp), any other is plain text. A preset takes precedence
+/// over a file of the same name; `./viridis` is the file. Throws Error(bad_input) with a message of one line that names
+/// file, line and remedy.
 colormaps::LoadedTransferFunction load_transfer_function(const std::string& file_or_preset,
                                                          const colormaps::TransferFunctionOptions& options);
 
-/// Plain text, one knot per line: `value r g b extinction`, separated by blanks, values not decreasing. Colours are
-/// linear, extinctions per world unit. `#` begins a comment; blank lines, CR LF and a UTF-8 byte order mark are
-/// allowed. Commas are not, because some locales write decimals with them. Two lines with the same value form a step.
+/// Parses plain text with one knot per line: `value r g b extinction`, separated by blanks. Values must not decrease.
+/// Colours are linear, extinctions per world unit. `#` begins a comment; blank lines, CR LF and a UTF-8 byte order mark
+/// are allowed. Commas are not allowed, because some locales write decimals with commas. Two lines with the same value
+/// form a step.
 colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view text, const std::string& source,
                                                                const colormaps::TransferFunctionOptions& options);
 

@@ -16,8 +16,9 @@ namespace tessera::io {
 
 using tessera::printable;
 
-/// Runs `work`, which reads a file: its errors come out as one line whatever they quote, with `source` as their subject
-/// if they begin with it; running out of memory becomes Error(system_failure).
+/// Runs `work`, which reads a file, and cleans its errors. The message becomes one printable line, whatever it quotes
+/// from the file; if it begins with `source`, that remains the subject. Running out of memory becomes
+/// Error(system_failure).
 template <class Work>
 auto with_clean_errors(const std::string& source, const Work& work) {
   try {
@@ -31,7 +32,7 @@ auto with_clean_errors(const std::string& source, const Work& work) {
   }
 }
 
-/// The error bad_input for a damaged file.
+/// Returns the error bad_input for a damaged file.
 inline scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
   return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", file.string(), what));
 }

@@ -15,19 +15,20 @@
 
 namespace tessera::io {
 
-/// The number of the line that contains the byte `at` of a text, from 1.
+/// Returns the number, from 1, of the line that contains the byte `at` of a text.
 std::size_t line_number(std::string_view text, std::size_t at);
 
 /// Throws Error(bad_input, "SOURCE: line N: WHAT") for the line that contains the byte `at` of a text. Bytes of `what`
 /// that are not printable are shown as '?'.
 [[noreturn]] void fail_at(std::string_view text, std::size_t at, const std::string& source, const std::string& what);
 
-/// What TextScanner::number() found.
+/// Result of TextScanner::number().
 enum class Scanned : std::uint8_t { number, nothing, other_word, out_of_range };
 
 /// Reads words and numbers that `blanks` separate: line by line with next_line(), or through the whole text, where line
-/// ends separate words too if `blanks` contains them. The rest of a line from `comment` on is skipped; 0: no comments.
-/// A UTF-8 byte order mark at the beginning is skipped. Text and source must outlive the scanner and its words.
+/// ends separate words, too, if `blanks` contains them. The character `comment` begins a comment, which is skipped; 0:
+/// there are no comments. A UTF-8 byte order mark at the beginning is skipped. Text and source must outlive the scanner
+/// and the words that it returns.
 class TextScanner {
  public:
   TextScanner(std::string_view text, const std::string& source, std::string_view blanks = ascii_blanks,
@@ -37,8 +38,8 @@ class TextScanner {
     if (text.starts_with(byte_order_mark)) at_ = next_line_ = byte_order_mark.size();
   }
 
-  /// Goes to the next line that contains more than blanks and a comment; words and numbers are then limited to it.
-  /// False at the end of the text.
+  /// Moves to the next line that contains more than blanks and a comment; words and numbers are then read only from
+  /// that line. Returns false at the end of the text.
   bool next_line() {
     while (next_line_ < text_.size()) {
       at_ = next_line_;
@@ -50,7 +51,7 @@ class TextScanner {
     return false;
   }
 
-  /// Skips blanks and comments; true if nothing else follows in the line or text.
+  /// Skips blanks and comments. Returns true if nothing else follows in the line or text.
   bool at_end() {
     for (; at_ < end_; ++at_) {
       if (is_blank(text_[at_])) continue;
@@ -60,7 +61,7 @@ class TextScanner {
     return true;
   }
 
-  /// The next word; empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view word() {
     if (at_end()) return {};
     const std::size_t first = at_;
@@ -68,7 +69,8 @@ class TextScanner {
     return text_.substr(first, at_ - first);
   }
 
-  /// Takes the next word if it is a number; a leading + is allowed. One outside a floating-point type's range is NaN.
+  /// Reads the next word if it is a number; a leading + is allowed. A number outside the range of a floating-point type
+  /// becomes NaN.
   template <class T>
   Scanned number(T& value) {
     if (at_end()) return Scanned::nothing;
@@ -81,14 +83,16 @@ class TextScanner {
     return Scanned::out_of_range;
   }
 
-  /// The rest of this line, for a text that next_line() does not limit to lines; goes on to the next line.
+  /// Returns the rest of the current line and moves to the next line. For texts that are not read line by line with
+  /// next_line().
   std::string_view rest_of_line() {
     const std::size_t first = at_, end = std::min(text_.find('\n', at_), end_);
     at_ = std::min(end + 1, end_);
     return text_.substr(first, end - first);
   }
 
-  /// The text before `mark` on this line, without surrounding blanks; skips both. Empty if the line has no mark.
+  /// Returns the text before `mark` on this line, without surrounding blanks, and skips it and the mark. Empty if the
+  /// line does not contain the mark.
   std::string_view word_before(char mark) {
     const std::string_view rest = line();
     const std::size_t found = rest.find(mark);
@@ -99,12 +103,12 @@ class TextScanner {
 
   [[nodiscard]] std::size_t at() const { return at_; }
   void go_to(std::size_t at) { at_ = at; }
-  /// The unread rest of the line that next_line() went to, or of the text.
+  /// The unread rest of the line that next_line() selected, or of the text.
   [[nodiscard]] std::string_view line() const { return text_.substr(at_, end_ - at_); }
-  /// All that follows, including the following lines.
+  /// Everything that follows, including the following lines.
   [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
 
-  /// Calls io::fail_at() for the current position, or another.
+  /// Calls io::fail_at() for the current position, or for `at`.
   [[noreturn]] void fail(const std::string& what) const { fail_at(at_, what); }
   [[noreturn]] void fail_at(std::size_t at, const std::string& what) const { io::fail_at(text_, at, source_, what); }
   [[nodiscard]] std::size_t line_number() const { return io::line_number(text_, at_); }

@@ -17,15 +17,15 @@ namespace tessera::io {
 inline constexpr std::size_t most_nested = 256;
 scene::Error nested_too_deep(const std::string& source);
 
-/// An opening tag: its name, its parents' names from the root on, its attributes with entities resolved, and the
-/// position in the text after it.
+/// An opening tag: its name, the names of its parents from the root on, its attributes with entities resolved, and the
+/// position in the text after the tag.
 struct XmlElement {
   std::string_view name;
   const std::vector<std::string>& parents;
   std::map<std::string, std::string> attributes;
   std::size_t text_at = 0;
 
-  /// The value of an attribute; null if it is absent.
+  /// Returns the value of an attribute; null if it is absent.
   [[nodiscard]] const std::string* find(const std::string& attribute) const;
 };
 

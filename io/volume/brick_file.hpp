@@ -31,19 +31,19 @@ namespace tessera::io {
 /// `name` is used in the messages of later reads; empty: the file's name.
 VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& options, const std::string& name = {});
 
-/// Writes a brick file with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on
-/// the threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
-/// Error(system_failure) if writing fails.
+/// Writes a brick file with blocks of `side` samples (8 to 1024) along each axis. Reads `source` once, one row of
+/// blocks at a time, on the threads of the caller's arena. The file appears by rename. Throws Error(bad_input) for a
+/// side out of range, Error(system_failure) if writing fails.
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64,
                   BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 
-/// Writes the same as a scratch file of this process that others can open (system/scratch_file.hpp), for open_bricks().
-/// Throws Error(bad_input) naming `subject` if there is no space for it.
+/// Writes a brick file as a scratch file of this process that other processes can open (system/scratch_file.hpp) with
+/// open_bricks(). Throws Error(bad_input) naming `subject` if there is no space for the file.
 std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 
-/// Unpacks samples into such a file, a part at a time, and opens it: sets the volume's source and scratch. Returns
-/// false without doing anything if the samples may stay in memory according to VolumeOptions, or if there is no space
-/// and this is not an error.
+/// Unpacks samples, a part at a time, into a scratch brick file and opens the file: sets the volume's source and
+/// scratch. Returns false without doing anything if the samples may stay in memory according to VolumeOptions, or if
+/// there is no space for the file and `options` does not make that an error.
 bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
                          VolumeFile& volume);
 

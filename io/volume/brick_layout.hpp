@@ -17,17 +17,17 @@ namespace tessera::io {
 inline constexpr std::string_view brick_magic = "TESSBRK1";
 inline constexpr int least_side = 8, most_side = 1024;
 
-/// Range of a block's values, as stored.
+/// Range of a block's values as they are stored, before scale and shift.
 struct BlockRange {
   double low = 1e300, high = -1e300;
   std::uint64_t blanks = 0;
 
-  /// Adds samples in the grid's storage format.
+  /// Adds samples, given in the grid's storage format.
   void add(const scene::Grid& grid, std::span<const std::byte> samples);
 };
 static_assert(sizeof(BlockRange) == 24);
 
-/// The blocks of a volume and the positions of their samples, in samples.
+/// The blocks into which a volume is divided. Positions of their samples are counted in samples.
 class Blocks {
  public:
   Blocks(const scene::GridIndex& samples, std::int64_t side);
@@ -38,8 +38,8 @@ class Blocks {
     return (b[2] * count_[1] + b[1]) * count_[0] + b[0];
   }
   [[nodiscard]] scene::SampleBox box(const scene::GridIndex& b) const;
-  /// Number of samples in all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its
-  /// row.
+  /// Number of samples in all blocks before block `b`: those in whole layers of blocks, in whole rows of the block's
+  /// layer, and in the block's row.
   [[nodiscard]] std::int64_t first_sample(const scene::GridIndex& b) const;
 
  private:
@@ -47,10 +47,10 @@ class Blocks {
   std::int64_t side_;
 };
 
-/// Additional header entries by name (volume_tags.hpp).
+/// Additional header entries as pairs of name and text (volume_tags.hpp).
 using BrickWords = std::vector<std::pair<std::string, std::string>>;
 
-/// Byte positions in a file to be written. Keeps a reference to the grid.
+/// Positions of bytes in a brick file that is to be written. Keeps a reference to the grid.
 class BrickLayout {
  public:
   BrickLayout(const scene::Grid& grid, int side, BrickWords words = {});
@@ -60,7 +60,7 @@ class BrickLayout {
   /// Position of the first block's samples.
   [[nodiscard]] std::uint64_t first_byte() const;
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Everything before the samples, once the ranges of all blocks are known.
+  /// Returns the bytes of the file that precede the samples, given the ranges of all blocks.
   [[nodiscard]] std::string beginning(std::span<const BlockRange> ranges) const;
 
  private:

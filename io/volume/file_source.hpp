@@ -17,8 +17,9 @@ namespace tessera::io {
 /// and where the system caches a file in pages of 2 MiB, a row of 33 bytes in each of 33 slices maps 66 MiB.
 class FileSource final : public scene::SampleSource {
  public:
-  /// `first_byte`: position of the samples in the file; `source` is its name in messages. Throws Error(bad_input)
-  /// unless the file has as many bytes as the grid needs, Error(system_failure) if it cannot be opened.
+  /// `first_byte` is the position of the samples in the file, `source` the file's name in messages. Throws
+  /// Error(bad_input) unless the file has as many bytes as the grid needs, Error(system_failure) if the file cannot be
+  /// opened.
   FileSource(scene::Grid grid, const std::filesystem::path& file, std::uint64_t first_byte, const std::string& source,
              const scene::ComponentChoice& choice, bool swapped);
 

@@ -10,9 +10,9 @@ namespace tessera::io {
 
 /// The fields and key/value pairs of an NRRD header.
 struct NrrdFields {
-  std::map<std::string, std::string> values;  ///< by name without blanks: "spaceorigin"
+  std::map<std::string, std::string> values;  ///< the key is the field's name without blanks: "spaceorigin"
   std::map<std::string, std::string> keys;    ///< pairs `KEY:=VALUE`, whose meaning the format does not define
-  std::size_t end = 0;                        ///< position of an attached payload
+  std::size_t end = 0;                        ///< position of a payload that is in the same file
 
   [[nodiscard]] const std::string* find(const char* name) const {
     const auto v = values.find(name);

@@ -10,9 +10,10 @@ namespace tessera::io {
 
 /// Options for reading a volume file.
 struct VolumeOptions : ReadOptions {
-  bool scratch_is_needed = false;  ///< other processes read it
+  bool scratch_is_needed = false;  ///< other processes read the unpacked samples
 
-  /// Unpacked samples of more bytes go into a scratch file. Bricks are copies, and the same amount remains for them.
+  /// Largest size in bytes of unpacked samples that stay in memory; larger ones are written to a scratch file. The
+  /// limit is half of the memory: bricks are copies and need the other half.
   [[nodiscard]] std::uint64_t most_in_memory() const {
     if (scratch_is_needed) return 0;
     return memory_bytes > 0 ? memory_bytes / 2 : std::numeric_limits<std::uint64_t>::max();

@@ -23,21 +23,21 @@ namespace tessera::io {
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
   std::shared_ptr<const system::ScratchFile>
-      scratch;                              ///< unpacked samples, which other processes can read too; else null
+      scratch;                              ///< unpacked samples that other processes can read, too; otherwise null
   bool in_memory = true;                    ///< all samples are in memory because they were unpacked or combined
-  scene::ValueRange range;                  ///< of the chosen field, with its blanks; empty until set_range()
-  std::vector<cells::FieldSummary> fields;  ///< low > high: unknown until set_range()
-  std::vector<std::string> notes;           ///< one line each: what was chosen or applied, or unusual about the file
+  scene::ValueRange range;                  ///< range and blanks of the chosen field; empty until set_range()
+  std::vector<cells::FieldSummary> fields;  ///< fields of the file; low > high: the range is unknown until set_range()
+  std::vector<std::string> notes;           ///< one line each: what was chosen or applied, or is unusual
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
-  BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values look like those of CT
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< becomes body_axes in set_range() if the values look like those of CT
   VolumeTags tags{};
   scene::TimeStepRead time_step{};
   bool xy_in_degrees = false;  ///< x and y are degrees, z is a length
 };
 
-/// Whether the file is a regular or rectilinear grid, or .raw. A helper inspects NetCDF, HDF5 and XDMF files, which
-/// takes some hundredths of a second.
+/// Whether the file is a regular or rectilinear grid, or .raw. For NetCDF, HDF5 and XDMF files a helper inspects the
+/// content, which takes some hundredths of a second.
 bool is_volume(const InputFile& file);
 
 /// Throws Error(bad_input) for a mesh. Does not read samples.
@@ -73,16 +73,19 @@ void require_volume(const InputFile& file);
 /// unknown encoding, type, field or time step, or if no sample is finite.
 VolumeFile open_volume(const InputFile& file, const ReadOptions& options = {});
 
-/// The same without the range and what follows from it, for callers that scan the samples themselves and then call
-/// set_range(). Vectors are read nevertheless when one component is chosen: they are listed by their lengths.
-/// `scratch_is_needed`: other processes read the unpacked samples, so these go into a file whatever their size.
+/// Opens a volume without computing its range and everything that depends on the range, for callers that scan the
+/// samples themselves and then call set_range(). If one component of vectors is chosen, the samples are read
+/// nevertheless, because fields of vectors are listed with the range of the vectors' lengths. `scratch_is_needed`:
+/// other processes read the unpacked samples, so these are written to a scratch file whatever their size.
 VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& options = {},
                                  bool scratch_is_needed = false);
 
-/// Sets the range of all samples, and derives fields and notes from it. Throws Error(bad_input) if no sample is finite.
+/// Stores the range of all samples, and derives fields and notes from it. Throws Error(bad_input) if no sample is
+/// finite.
 void set_range(VolumeFile& volume, const std::filesystem::path& file, const scene::ValueRange& range);
 
-/// Name of a type on the command line and in .raw names: uint8, int16, float32, ... (float and double too).
+/// Parses the name of a type as used on the command line and in names of .raw files: uint8, int16, float32, ... (also
+/// float and double).
 std::optional<scene::SampleType> parse_sample_type(const std::string& text);
 
 }  // namespace tessera::io

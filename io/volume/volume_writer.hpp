@@ -11,16 +11,16 @@ namespace tessera::io {
 /// Whether write_volume supports the extension: .vti .vtr .nrrd .raw .bricks.
 bool is_volume_output(const std::filesystem::path& file);
 
-/// The type that is written: the stored one, unless scale and shift must be applied; then float32 for float32 and types
-/// of up to 16 bits, else float64.
+/// Returns the type that is written. This is the stored type, unless scale and shift must be applied: then float32 for
+/// float32 and types of up to 16 bits, float64 for others.
 scene::SampleType written_type(const scene::Grid& grid);
 
-/// Writes a volume by its extension, uncompressed, reading some slices of `source` at a time, so that the file may be
-/// larger than memory. Stored types are kept; if the volume has a scale and shift that the format cannot store (all but
-/// .bricks), they are applied and written_type() is used. `block`: side of a brick file's blocks. .nrrd, .vti, .vtr and
-/// .bricks store `axes` and `tags`. Appears by rename. Throws Error(bad_input) for what the format cannot represent:
-/// cell data in .nrrd and .raw, a rectilinear grid in all but .vtr and .bricks, a direction in .raw and .vtr;
-/// Error(system_failure) if writing fails.
+/// Writes a volume, uncompressed, in the format of the extension. Reads some slices of `source` at a time, so that the
+/// file may be larger than memory. Stored types are kept, but if the format cannot store the volume's scale and shift
+/// (only .bricks can), these are applied and written_type() is used. `block`: side of a brick file's blocks. .nrrd,
+/// .vti, .vtr and .bricks store `axes` and `tags`. The file appears by rename. Throws Error(bad_input) for features
+/// that the format cannot represent: cell data in .nrrd and .raw, a rectilinear grid in all formats but .vtr and
+/// .bricks, a direction in .raw and .vtr; Error(system_failure) if writing fails.
 void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block = 64,
                   BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 

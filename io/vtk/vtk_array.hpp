@@ -41,18 +41,20 @@ struct VtkArrayPlace {
 /// several threads.
 class VtkArrayBytes {
  public:
-  /// No value if the array's own counts are impossible for this file. Such an array does not allocate memory.
+  /// Opens an array. No value if the array's own counts are impossible for this file; no memory is allocated for an
+  /// array of this kind.
   static std::optional<VtkArrayBytes> open(const system::PositionalFile& file, const VtkArrayPlace& place);
 
   /// Size of the whole array.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Unpacked size of a block; 0: it has no blocks.
+  /// Unpacked size of a block; 0: the array is not divided into blocks.
   [[nodiscard]] std::uint64_t block_size() const { return block_size_; }
   /// Position and stored size of the array's bytes in the file, not counting blanks in text.
   [[nodiscard]] std::uint64_t position() const { return packed_.position(); }
   [[nodiscard]] std::uint64_t packed_size() const { return packed_size_; }
 
-  /// The next `count` bytes, at most size() in total; false: they are damaged.
+  /// Reads the next `count` bytes; all calls together may read at most size() bytes. Returns false if the bytes are
+  /// damaged.
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count);
 
  private:
@@ -67,21 +69,22 @@ class VtkArrayBytes {
   std::uint64_t size_ = 0, packed_size_ = 0, block_size_ = 0, last_size_ = 0;
   std::vector<std::uint64_t> packed_blocks_;
   std::size_t next_ = 0;          ///< block
-  std::vector<std::byte> block_;  ///< a block that was read partly
+  std::vector<std::byte> block_;  ///< a block that was only partly read
   std::size_t block_at_ = 0;
 };
 
-/// Where an array of `count` bytes ends; for text, the end may be some blanks and padding earlier. No value if the
-/// array's own counts disagree with `count`, exceed the file, or have blocks too large to be read a part at a time.
+/// Returns where an array of `count` bytes ends; for text, the end may be before some blanks and padding. No value if
+/// the array's own counts do not match `count`, exceed the file, or include blocks too large to be read a part at a
+/// time.
 std::optional<std::uint64_t> end_of_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                               std::uint64_t count);
 
-/// All bytes of a small array. No value if its size is not `count` or it is damaged.
+/// Returns all bytes of a small array. No value if the size of the array is not `count` or if it is damaged.
 std::optional<std::vector<std::byte>> small_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                                       std::uint64_t count);
 
-/// Passes all `count` bytes of the array to `use` in parts. Throws Error(bad_input) naming `source` if they are damaged
-/// or too few.
+/// Passes all `count` bytes of the array to `use`, in parts. Throws Error(bad_input) naming `source` if the bytes are
+/// damaged or too few.
 void read_vtk_array(const std::filesystem::path& file, const VtkArrayPlace& place, std::uint64_t count,
                     const std::string& source, const system::ByteSink& use);
 

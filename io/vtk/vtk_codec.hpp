@@ -13,14 +13,16 @@ namespace tessera::io {
 /// stream.
 enum class VtkCodec : std::uint8_t { none, zlib, lz4, lzma };
 
-/// The codec of a file's `compressor` attribute: VtkCodec::none if it is empty, no value if it is unknown.
+/// Returns the codec that a file's attribute `compressor` names: VtkCodec::none if the attribute is empty, no value if
+/// it is unknown.
 std::optional<VtkCodec> vtk_codec_named(std::string_view compressor);
 
-/// Whether a block of `packed` bytes can unpack to `unpacked` bytes. Larger blocks are refused before memory is
-/// allocated.
+/// Whether a block of `packed` bytes can unpack to `unpacked` bytes. Blocks that state a larger size are refused before
+/// memory is allocated.
 bool can_unpack_to(VtkCodec codec, std::uint64_t packed, std::uint64_t unpacked);
 
-/// Unpacks one block into all of `out`. False if it is damaged or has more or fewer bytes.
+/// Unpacks one block and fills `out`. Returns false if the block is damaged or does not have exactly as many bytes as
+/// `out`.
 bool unpack_block(VtkCodec codec, std::span<const std::byte> packed, std::span<std::byte> out);
 
 }  // namespace tessera::io

@@ -10,13 +10,14 @@
 
 namespace tessera::io {
 
-/// The strings of a VTK XML file's field data, by name, if they are stored as text (character codes) within its first
-/// 64 KiB, as write_volume() does. Others are omitted; never an error.
+/// Returns the strings in the field data of a VTK XML file, with their names, if they are stored as text (character
+/// codes) within the first 64 KiB of the file, where write_volume() stores them. Other strings are omitted, without an
+/// error.
 std::vector<std::pair<std::string, std::string>> vtk_field_words(std::string_view beginning);
 
-/// The time in a VTK file's field data: `TimeValue`, or in legacy files also `TIME`, as VTK and VisIt write it, within
-/// the same bytes. For a list of pieces, the time of the list, else of its first piece. No value for other files; never
-/// an error.
+/// Returns the time in the field data of a VTK file: `TimeValue`, or in legacy files also `TIME`, which VTK and VisIt
+/// write. `beginning` contains the first bytes of the file, in which the time is searched. For a list of pieces, it is
+/// the time in the list or else in the first piece. No value for other files; never reports an error.
 std::optional<double> vtk_time_value(const std::filesystem::path& file, std::string_view beginning);
 std::optional<double> vtk_time_value(const std::filesystem::path& file);
 

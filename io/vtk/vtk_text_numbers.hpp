@@ -13,21 +13,22 @@ class PositionalFile;
 
 namespace tessera::io {
 
-/// Reads the numbers of an ascii array of a VTK XML file sequentially, each in a notation that C++ streams accept, or
-/// nan or inf. 8-bit values are numbers too, not characters. Text after the last requested number is not examined.
+/// Reads the numbers of an ascii array of a VTK XML file sequentially. Each number has a notation that C++ streams
+/// accept, or is nan or inf. 8-bit values are numbers, too, not characters. Text after the last requested number is not
+/// examined.
 class VtkTextNumbers {
  public:
   /// Reads the text between two positions of the file.
   VtkTextNumbers(const system::PositionalFile& file, std::uint64_t first, std::uint64_t end);
 
-  /// Upper bound of the numbers that follow.
+  /// Upper bound of the number of numbers that follow.
   [[nodiscard]] std::uint64_t left() const { return (end_ - at_ + (text_.size() - used_)) / 2 + 1; }
 
-  /// The next `count` numbers, stored as `type`; false if the text ends early, or contains another word or a number
-  /// outside the type's range.
+  /// Reads the next `count` numbers and stores them as `type`. Returns false if the text ends early, or contains
+  /// another word or a number outside the type's range.
   [[nodiscard]] bool read(NumberType type, std::byte* to, std::uint64_t count);
 
-  /// The word that read() refused, or its beginning; empty at the text's end.
+  /// Returns the word that read() refused, or the beginning of that word; empty at the end of the text.
   [[nodiscard]] std::string next_word() const;
 
  private:

@@ -18,19 +18,19 @@
 
 namespace tessera::io {
 
-/// The arrays of a file that this process reads itself: each is read from the file when it is requested, or from
-/// memory.
+/// The arrays of a file that this process reads itself. When an array is requested, its numbers are read from the file
+/// or from memory.
 class VtkXmlArrays final : public ArraySource {
  public:
   using Stream = std::function<void(const system::ByteSink& use)>;
 
-  /// `progress` is called with the copied share of the expected bytes; may be null.
+  /// `progress` is called with the fraction of the expected bytes that were copied; may be null.
   explicit VtkXmlArrays(ReadProgressFunction progress = {}) : progress_(std::move(progress)) {}
 
-  /// Numbers the array and stores the function that passes on its bytes, in whole tuples.
+  /// Adds an array: assigns its number, and stores the function that passes its bytes in whole tuples.
   ForeignArray hold(ForeignArray array, Stream stream);
 
-  /// Holds numbers in memory, which determine the number of tuples.
+  /// Adds an array whose numbers are in memory; their count determines the number of tuples.
   template <class T>
   ForeignArray hold_vector(ForeignArray array, std::vector<T> numbers) {
     array.tuples = numbers.size() / static_cast<std::size_t>(array.components);

@@ -19,19 +19,20 @@ struct VtkXmlElement {
   std::map<std::string, std::string> attributes{};
   std::uint64_t text_at = 0;          ///< position in the file after its opening tag
   std::uint64_t text_end = 0;         ///< for a DataArray or Array: position of the next tag; not set for others
-  bool has_text_behind_tags = false;  ///< a comment or element is before or among an array's numbers
+  bool has_text_behind_tags = false;  ///< a comment or element precedes or interrupts an array's numbers
 
-  /// The value of an attribute, or `otherwise`.
+  /// Returns the value of an attribute, or `otherwise` if it is absent.
   [[nodiscard]] std::string word(const std::string& attribute, const std::string& otherwise = "") const;
   [[nodiscard]] bool has(const std::string& attribute) const { return attributes.contains(attribute); }
 };
 
-/// The elements of a file up to AppendedData, where the XML ends, or up to its end. The numbers of arrays are skipped,
-/// not parsed as XML. Throws Error(bad_input, "SOURCE: ...") if the rest is not well formed, or if elements are nested
-/// deeper than most_nested (io/text/xml_elements.hpp).
+/// Returns the elements of a file up to AppendedData, where the XML ends, or up to the end of the file. The numbers of
+/// arrays are skipped, not parsed as XML. Throws Error(bad_input, "SOURCE: ...") if the rest is not well formed, or if
+/// elements are nested deeper than most_nested (io/text/xml_elements.hpp).
 std::vector<VtkXmlElement> vtk_xml_elements(const system::PositionalFile& file, const std::string& source);
 
-/// For files parsed by VTK's reader, which recurses as deep as the elements: throws like vtk_xml_elements().
+/// Throws like vtk_xml_elements(). Called for files that VTK's reader parses, because that reader recurses as deep as
+/// the elements are nested.
 void require_vtk_xml_form(const system::PositionalFile& file, const std::string& source);
 
 }  // namespace tessera::io

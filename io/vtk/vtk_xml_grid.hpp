@@ -14,10 +14,10 @@ namespace tessera::io {
 
 /// An array as a VTK XML file declares it.
 struct VtkXmlArray {
-  std::string name;                ///< `array NUMBER`, from 1, if the file has no name
-  std::optional<NumberType> type;  ///< no value: text, or tuples without numbers
+  std::string name;                ///< `array NUMBER`, counted from 1, if the file does not name the array
+  std::optional<NumberType> type;  ///< type of the numbers; no value for text and for tuples without components
   int components = 1;
-  bool are_bits = false;  ///< packed eight to a byte, the first highest, except in text; other code sees uint8
+  bool are_bits = false;  ///< eight bits to a byte, the first in the highest bit, except in text; other code uses uint8
   bool ascii = false;
   VtkArrayPlace place{};  ///< for ascii numbers only the first byte and the end are set
 
@@ -30,19 +30,19 @@ struct VtkXmlArray {
 /// The arrays of a piece's points or cells.
 struct VtkXmlFields {
   std::vector<VtkXmlArray> arrays;
-  std::string scalars, vectors;  ///< the names of the active ones
+  std::string scalars, vectors;  ///< the names of the active arrays
   std::string global_ids, pedigree_ids;
 };
 
 /// One <Piece>: its arrays of each kind, without their numbers.
 struct VtkXmlPiece {
-  std::uint64_t points = 0, cells = 0;   ///< for unstructured grids
+  std::uint64_t points = 0, cells = 0;   ///< numbers of an unstructured grid
   std::string extent;                    ///< for the other grids
-  std::vector<VtkXmlArray> coordinates;  ///< in <Points> or <Coordinates>
+  std::vector<VtkXmlArray> coordinates;  ///< arrays in <Points> or <Coordinates>
   std::vector<VtkXmlArray> topology;     ///< in <Cells>
   VtkXmlFields point_fields, cell_fields;
 
-  /// An array of <Cells>; null if there is none.
+  /// Returns an array of <Cells>; null if there is none of this name.
   [[nodiscard]] const VtkXmlArray* find(const std::string& name) const;
 };
 
@@ -53,11 +53,12 @@ struct VtkXmlGrid {
   std::vector<VtkXmlPiece> pieces;
 };
 
-/// No value if the file has unsupported features: time steps, two arrays of one name, comments between numbers, a later
-/// version or type. Throws Error(bad_input) naming `source` if it is another kind of file, or damaged.
+/// Returns the description of a file. No value if the file has unsupported features: time steps, two arrays of one
+/// name, comments between numbers, a later version, or another type. Throws Error(bad_input) naming `source` if it is
+/// another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source);
 
-/// The name of a number type in VTK XML files, and the inverse.
+/// Returns the name of a number type in VTK XML files. The second function is the inverse.
 const char* vtk_xml_type_name(NumberType type);
 std::optional<NumberType> vtk_xml_number_type(const std::string& name);
 

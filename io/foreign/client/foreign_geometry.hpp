@@ -9,7 +9,7 @@
 
 namespace tessera::io {
 
-/// Origin, spacing and direction of an image.
+/// Copies origin, spacing and direction of an image to `geometry`.
 void set_image_geometry(const ForeignPart& image, scene::GridGeometry& geometry);
 
 /// The coordinates along one axis of a rectilinear grid.
@@ -18,9 +18,9 @@ struct AxisCoordinates {
   std::vector<double> values{};
 };
 
-/// Sets the coordinates of a grid whose axes are its directions. Decreasing coordinates are reversed, and the direction
-/// is mirrored. If every axis is uniformly spaced up to rounding, the grid becomes regular: many writers only produce
-/// rectilinear grids, and regular ones are rendered much faster.
+/// Sets the coordinates of a rectilinear grid. Decreasing coordinates are reversed, and the direction of that axis is
+/// mirrored. If all axes are uniformly spaced up to rounding, the grid becomes regular: many writers produce only
+/// rectilinear grids, and regular grids are rendered much faster.
 void set_rectilinear_geometry(std::array<AxisCoordinates, 3> axes, scene::GridGeometry& geometry);
 
 }  // namespace tessera::io

@@ -11,7 +11,7 @@
 
 namespace tessera::io {
 
-/// All numbers of an array; the caller has checked its type.
+/// Reads all numbers of an array, whose type the caller has checked.
 template <class T>
 std::vector<T> numbers_of(const ForeignFile& file, const ForeignArray& array) {
   std::vector<T> numbers;

@@ -9,10 +9,11 @@
 
 namespace tessera::io {
 
-/// Reads an STL surface by VTK; each face has its own points. Throws Error(bad_input, "FILE: ...").
+/// Reads an STL surface with VTK; each face has its own points. Throws Error(bad_input, "FILE: ...").
 cells::Surface read_stl(const InputFile& file);
 
-/// A VTK surface, XML (.vtp) or legacy: its polygons and strips; point arrays with one component become its attributes.
+/// A surface in a VTK file, XML (.vtp) or legacy. Polygons and strips are read; point arrays with one component become
+/// attributes.
 struct VtkSurface {
   cells::Surface surface;
   std::vector<std::string> attribute_names, notes;

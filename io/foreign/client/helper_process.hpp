@@ -27,16 +27,16 @@ namespace tessera::io {
 class SharedBytes {
  public:
   SharedBytes() = default;
-  /// Throws std::bad_alloc if it cannot be mapped, std::invalid_argument unless it holds `count` bytes.
+  /// Throws std::bad_alloc if `file` cannot be mapped, std::invalid_argument unless it contains `count` bytes.
   SharedBytes(const system::Descriptor& file, std::uint64_t count);
-  /// Memory that another process can fill and modify, but not shrink, through `file`.
+  /// Creates memory that another process can fill and modify, but not shrink, through `file`.
   static SharedBytes made(std::size_t count, system::Descriptor& file);
   ~SharedBytes();
   SharedBytes(SharedBytes&& other) noexcept;
   SharedBytes& operator=(SharedBytes&& other) noexcept;
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(start_), size_}; }
-  /// The bytes as numbers, as many as fit.
+  /// Returns the bytes as numbers of type T. Remaining bytes that are less than a number are omitted.
   template <class T>
   [[nodiscard]] std::span<const T> as() const {
     return {static_cast<const T*>(start_), size_ / sizeof(T)};
@@ -47,34 +47,35 @@ class SharedBytes {
   std::size_t size_ = 0;
 };
 
-/// The purpose of a helper, in the words of the error that its death causes ("FILE: WORDS crashed (...); REMEDY"), and
-/// which of the programs it is.
+/// The purpose of a helper: which program it is, and the words of the error that is reported if the helper dies ("FILE:
+/// WORDS crashed (...); REMEDY").
 struct HelperTask {
   std::string words = "reading it", remedy = "have it written again, or in another format";
   Reader reader = Reader::vtk;
   const Format* format = nullptr;   ///< format of the files, named in the error if the program is not installed
   ReadProgressFunction progress{};  ///< called with the progress; may be null
-  std::string limit_remedy{};       ///< remedy if the helper takes too long; empty: the usual one
-  /// How long it may wait for anything but the caller, for example a pipe, without using processor time.
+  std::string limit_remedy{};       ///< remedy to report if the helper takes too long; empty: the usual remedy
+  /// How long the helper may wait, without using processor time, for anything but the caller, for example for a pipe.
   std::chrono::milliseconds patience = std::chrono::minutes(2);
 };
 
-/// Why a helper died, without the subject.
+/// Why a helper died. The words do not contain the subject of the sentence.
 struct HelperDeath {
   scene::ErrorCode code;
   std::string words;
 };
 
 /// A running helper program (readers/README.md): a separate process in which third-party readers, and TetGen, may
-/// crash, print and allocate memory. It ends with this object.
+/// crash, print and allocate memory. The helper ends with this object.
 ///
-/// Found    by find_reader(). The first call() throws missing_reader() with its subject if it is not installed.
-/// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and no variable that MPI
-///          launchers set; its output is discarded.
-/// Limits   on memory and processor time, from the sizes of the files it opens or the surface it fills. It sets them
-///          itself when it gives up the right to change anything (readers/common/sandbox.hpp). A helper that waits
-///          longer than HelperTask::patience is killed.
-/// Threads  calls wait for each other.
+/// Found    by find_reader(). The first call() throws missing_reader() with its subject if the program is not
+/// installed. Started  by posix_spawn, so nothing of the caller's process is copied. The helper inherits no file and no
+/// variable
+///          that MPI launchers set; its output is discarded.
+/// Limits   on memory and processor time are computed from the sizes of the files that the helper opens or the surface
+///          that it fills. The helper sets them itself when it gives up the right to change anything
+///          (readers/common/sandbox.hpp). A helper that waits longer than HelperTask::patience is killed.
+/// Threads  calls from several threads are executed one after the other.
 class HelperProcess final : public ArraySource {
  public:
   /// Throws Error(system_failure) if the program is installed but cannot be started.
@@ -84,14 +85,14 @@ class HelperProcess final : public ArraySource {
   HelperProcess& operator=(const HelperProcess&) = delete;
 
   /// Sends a request and waits for the reply. Throws the helper's own error, or Error(bad_input, "SUBJECT: ...") if the
-  /// helper died; then every later call throws that too.
+  /// helper has died; all later calls then throw the same error.
   nlohmann::json call(const nlohmann::json& request, const std::string& subject);
 
-  /// Returns an array of the helper, which then discards it unless `keep` is set. Throws like call().
+  /// Fetches an array from the helper, which then discards the array unless `keep` is set. Throws like call().
   SharedBytes take(const ForeignArray& array, const std::string& subject, bool keep = false);
 
-  /// ArraySource::stream(); the helper prepares the next tuples in parallel. Faster than take(), which creates a file
-  /// of small pages.
+  /// Implements ArraySource::stream(); the helper prepares the next tuples in parallel. Faster than take(), for which
+  /// the helper creates a file of small pages.
   using ArraySource::stream;
   void stream(const ForeignArray& array, const std::string& subject,
               const std::function<void(std::span<const std::byte> tuples)>& use, Then then) override;
@@ -99,17 +100,17 @@ class HelperProcess final : public ArraySource {
   void expect(std::uint64_t bytes) override { expected_ = bytes, received_ = 0; }
   void drop(std::span<const std::uint64_t> arrays) noexcept override;
 
-  /// Its process id, for tests; -1 once it has died.
+  /// Process id of the helper, for tests; -1 once the helper has died.
   [[nodiscard]] int process() const { return process_; }
 
  private:
   HelperMessage exchange(const nlohmann::json& request, const std::string& subject);
   void send(const nlohmann::json& request, const std::string& subject, int file = -1);
   HelperMessage receive(const std::string& subject);
-  /// The next message; no value if the helper has ended or was killed because it waited too long.
+  /// Waits for the next message. No value if the helper has ended, or was killed because it waited too long.
   std::optional<HelperMessage> await();
   void open_window(const std::string& subject);
-  /// To be called before waiting for its end; afterwards its process id may belong to another process.
+  /// Must be called before waiting for the helper's end: after the end, the process id may belong to another process.
   void forget() const;
   [[noreturn]] void report_death(const std::string& subject);
 
@@ -118,11 +119,12 @@ class HelperProcess final : public ArraySource {
   int process_ = -1;
   system::Descriptor socket_;
   SharedBytes window_;                         ///< slots for stream(); empty until first used
-  std::uint64_t expected_ = 0, received_ = 0;  ///< bytes of stream()
-  bool has_begun_ = false;                     ///< its first message has arrived
-  bool waits_ = false;                         ///< it was killed because it waited too long
-  std::string reading_;                        ///< the file that it is reading, of several; empty: not reported yet
-  std::optional<HelperDeath> death_;           ///< set once it is dead
+  std::uint64_t expected_ = 0, received_ = 0;  ///< bytes that stream() will pass, and has passed
+  bool has_begun_ = false;                     ///< the helper's first message has arrived
+  bool waits_ = false;                         ///< the helper was killed because it waited too long
+  std::string reading_;                        ///< which of several files the helper is reading; empty: not reported
+                                               ///< yet
+  std::optional<HelperDeath> death_;           ///< set once the helper is dead
 };
 
 }  // namespace tessera::io

@@ -12,8 +12,9 @@
 
 namespace tessera::io {
 
-/// Supplies the arrays of an opened file (ForeignContents), identified by number: the reader program that holds them
-/// (HelperProcess), or this process, which reads them from the file (VtkXmlArrays).
+/// Supplies the arrays of an opened file (ForeignContents), which are identified by number. The source is either the
+/// reader program that stores the arrays (HelperProcess) or this process, which reads them from the file
+/// (VtkXmlArrays).
 class ArraySource {
  public:
   ArraySource() = default;
@@ -24,8 +25,8 @@ class ArraySource {
   enum class Then : std::uint8_t { dropped, kept };
 
   /// Passes all tuples of an array to `use`, in order, in runs of whole tuples. `use` must copy the bytes before it
-  /// examines them: another process may change them. The array can be read again later only with Then::kept. Throws
-  /// Error(bad_input) with a message that begins with `subject`.
+  /// examines them, because another process may change them. The array can be read again later only if `then` is
+  /// Then::kept. Throws Error(bad_input) with a message that begins with `subject`.
   virtual void stream(const ForeignArray& array, const std::string& subject,
                       const std::function<void(std::span<const std::byte> tuples)>& use, Then then) = 0;
   void stream(const ForeignArray& array, const std::string& subject,
@@ -33,7 +34,7 @@ class ArraySource {
     stream(array, subject, use, Then::dropped);
   }
 
-  /// All bytes of an array, by stream().
+  /// Returns all bytes of an array, read by stream().
   std::vector<std::byte> copy(const ForeignArray& array, const std::string& subject, Then then = Then::dropped);
 
   /// Announces the number of bytes that stream() will pass, for progress reports.

@@ -24,20 +24,20 @@ using scene::size_of;
 using scene::with_number_type;
 using tessera::NumberType;
 
-/// Tuples [first, first + out.size()) of an array as doubles: one component, or their lengths (`magnitude`,
-/// cells/cell_block.hpp). `bytes` contains the whole array, aligned for its type.
+/// Writes tuples [first, first + out.size()) of an array as doubles: one component, or, for `component` = `magnitude`
+/// (cells/cell_block.hpp), the lengths of the tuples. `bytes` contains the whole array, aligned for its type.
 void read_tuples(std::span<const std::byte> bytes, NumberType type, int components, int component, std::size_t first,
                  std::span<double> out);
 
 /// An array held by the helper.
 struct ForeignArray {
-  std::uint64_t number = 0;  ///< identifies it in requests
+  std::uint64_t number = 0;  ///< identifies the array in requests
   std::string name{};
   NumberType type = NumberType::float64;
   int components = 1;
   std::uint64_t tuples = 0;
-  bool active = false;         ///< the file marks it as its scalars or vectors
-  bool ids = false;            ///< the file marks it as ids
+  bool active = false;         ///< the file marks the array as its scalars or vectors
+  bool ids = false;            ///< the file marks the array as ids
   cells::NumberTally tally{};  ///< fields only
 
   [[nodiscard]] std::size_t tuple_bytes() const { return static_cast<std::size_t>(components) * size_of(type); }
@@ -66,7 +66,7 @@ struct ForeignPart {
   std::array<double, 3> origin{}, spacing{};
   std::array<double, 9> direction{};
   std::optional<ForeignArray> points, types, offsets, connectivity, faces, face_locations;
-  std::vector<ForeignArray> coordinates;  ///< three for a rectilinear grid or trees; otherwise none
+  std::vector<ForeignArray> coordinates;  ///< three arrays for a rectilinear grid or trees; otherwise empty
   int branching = 0, levels = 0;
   std::vector<ForeignArray> point_fields, cell_fields;
 };
@@ -75,16 +75,16 @@ struct ForeignContents {
   std::vector<ForeignPart> parts;
   std::vector<std::string> notes;
   std::string format;
-  std::string modality{}, unit{};            ///< of the values of a patient's image; may be empty
-  std::vector<std::string> block_names{};    ///< of all blocks, if blocks are not parts; empty: the names of the parts
-  std::vector<std::string> surface_names{};  ///< of surfaces left out because the file has volume cells
+  std::string modality{}, unit{};            ///< modality, and unit of the values, of a patient's image; may be empty
+  std::vector<std::string> block_names{};    ///< names of all blocks, if blocks are not parts; otherwise empty
+  std::vector<std::string> surface_names{};  ///< names of surfaces left out because the file has volume cells
   scene::TimeStepRead time_step{};
   bool labels = false;         ///< the values are declared to be labels
   bool xy_in_degrees = false;  ///< x and y are degrees, z is a length
   bool has_levels = false;     ///< the parts are images: blocks of several refinement levels
 };
 
-/// Serializes the contents (CBOR, RFC 8949). contents_of() is the inverse and throws std::exception for other bytes.
+/// Serializes the contents as CBOR (RFC 8949). contents_of() is the inverse and throws std::exception for other bytes.
 std::vector<std::uint8_t> bytes_of(const ForeignContents& contents);
 ForeignContents contents_of(std::span<const std::uint8_t> bytes);
 

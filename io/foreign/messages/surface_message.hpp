@@ -10,23 +10,24 @@
 
 namespace tessera::io {
 
-/// A surface filled by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015) with
-/// tets of at most `max_volume` and radius-edge ratio 2, and its fields.
+/// A surface and its fields, filled with tets by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh
+/// Generator", ACM TOMS 2015). The tets have a volume of at most `max_volume` and a radius-edge ratio of at most 2.
 struct FilledMesh {
   std::vector<glm::dvec3> points;
   std::vector<std::uint32_t> tets;              ///< four indices per tet
-  std::vector<double> depth;                    ///< per point: distance to the surface, world units
-  std::vector<std::vector<double>> attributes;  ///< of the surface, per point
+  std::vector<double> depth;                    ///< distance of each point to the surface, world units
+  std::vector<std::vector<double>> attributes;  ///< attributes of the surface, each with a value per point
 };
 
 /// How finely a surface is filled.
 struct FillSize {
   double max_volume;       ///< largest volume of a tet, world units cubed
   double tets;             ///< estimated number of tets: the enclosed volume divided by `max_volume`
-  bool is_chosen = false;  ///< set by the user for a long run: allows 40 times the time and 8 times the memory
+  bool is_chosen = false;  ///< set by the user for a long run, which may take 40 times the time and 8 times the memory
 };
 
-/// A surface as JSON for the reader program. surface_of() is the inverse and throws std::exception for other JSON.
+/// Converts a surface to JSON for the reader program. surface_of() is the inverse and throws std::exception for other
+/// JSON.
 nlohmann::json json_of(const cells::Surface& surface);
 cells::Surface surface_of(const nlohmann::json& json);
 
