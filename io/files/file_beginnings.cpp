@@ -53,7 +53,7 @@ bool is_count(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Whether a line is KEY followed by `after`, with blanks between, in upper or lower case.
+/// Whether a line consists of KEY and the character `after`, with blanks between them, in upper or lower case.
 bool is_key(std::string_view line, std::string_view key, char after) {
   if (line.size() < key.size() ||
       !std::equal(key.begin(), key.end(), line.begin(), [](char a, char b) { return a == (b & ~0x20); }))
@@ -62,8 +62,8 @@ bool is_key(std::string_view line, std::string_view key, char after) {
   return rest.starts_with(after);
 }
 
-/// The header size stored in a NIfTI or Analyze header, in either byte order, if it is 348 or 540 and at least as many
-/// bytes are available; else 0.
+/// Returns the header size that is stored in a NIfTI or Analyze header, in either byte order, if it is 348 or 540 and
+/// the text has at least as many bytes; otherwise 0.
 std::size_t nifti_header_size(std::string_view text) {
   for (const std::size_t size : {348U, 540U}) {
     const char low = static_cast<char>(size & 255), high = static_cast<char>(size >> 8);
@@ -108,7 +108,7 @@ bool looks_like_amrex(std::string_view beginning) {
   if (error != std::errc() || end != count.data() + count.size() || fields < 1 || fields > most_fields) return false;
   for (std::int64_t f = 0; f < fields; ++f) {
     if (next().empty()) return false;
-    if (beginning.empty()) return version.ends_with("-V1.1");  // the rest follows many fields
+    if (beginning.empty()) return version.ends_with("-V1.1");  // the text ends among many fields
   }
   const std::string_view dimensions = next();
   return dimensions == "1" || dimensions == "2" || dimensions == "3";
@@ -150,7 +150,7 @@ std::string vtk_xml_type(std::string_view text) {
   const std::size_t end = text.find('>', element);
   constexpr std::string_view word = "type";
   std::size_t key = text.find(word, element);
-  while (key < end && (!without_blanks(text.substr(key - 1, 1)).empty() ||  // as in header_type
+  while (key < end && (!without_blanks(text.substr(key - 1, 1)).empty() ||  // `type` may be the end of header_type
                        !without_blanks(text.substr(key + word.size())).starts_with('=')))
     key = text.find(word, key + 1);
   if (key == std::string_view::npos || key > end) return "";
@@ -257,7 +257,8 @@ bool begins_as_fluent(const FileBeginning& file) {
   const std::string_view text = without_blanks(file.text);
   if (!text.starts_with('(')) return false;
   const auto words = words_of(text.substr(1, 40));
-  // Sections: a comment, whose quotes some writers omit, a header, dimensions, the machine that wrote the file.
+  // The file consists of sections: a comment, whose quotes some writers omit, a header, dimensions, the machine that
+  // wrote the file.
   return words.size() > 1 && is_count(words[0]) && words[0].size() <= 2 &&
          (words[0] == "0" || words[1].front() == '"' || words[1].front() == '(' ||
           (words[0] == "2" && (words[1].front() == '3' || words[1].front() == '2')));
@@ -306,7 +307,7 @@ bool begins_as_meta_image(const FileBeginning& file) {
          (file.text.starts_with("Comment") && file.text.find("NDims") != std::string_view::npos);
 }
 
-/// A header size in either byte order, and NIfTI's magic word.
+/// Checks for a header size in either byte order, and for NIfTI's magic word.
 bool begins_as_nifti(const FileBeginning& file) {
   const auto has_magic = [&](std::size_t at, std::string_view first, std::string_view second) {
     const std::string_view magic = file.text.substr(at, 4);
@@ -317,7 +318,7 @@ bool begins_as_nifti(const FileBeginning& file) {
          (size == 540 && has_magic(4, {"n+2\0", 4}, {"ni2\0", 4}));
 }
 bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
-/// Like NIfTI without the magic word.
+/// The header is like that of NIfTI, without the magic word.
 bool begins_as_analyze(const FileBeginning& file) {
   if (begins_as_nifti(file) || nifti_header_size(file.text) != 348) return false;
   const auto dimensions = [&](std::size_t low) { return file.text[low] >= 1 && file.text[low] <= 7; };
@@ -341,7 +342,7 @@ bool begins_as_abaqus(const FileBeginning& file) {
 }
 
 bool begins_as_medit(const FileBeginning& file) { return begins_as_medit_text(file.text); }
-/// It begins with the single number 1, like binary Medit.
+/// The file begins with the single number 1, like binary Medit.
 bool begins_as_freesurfer(const FileBeginning& file) { return file.text.starts_with(std::string_view("\0\0\0\1", 4)); }
 bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
 bool begins_as_mfem(const FileBeginning& file) {

@@ -19,7 +19,8 @@ namespace tessera::io {
 
 namespace {
 
-/// Name of the unnamed file; it ends in the gzip file's size, so that helpers know it too.
+/// Beginning of the name of the unnamed file. The name ends with the size of the gzip file, so that helpers know that
+/// size, too.
 constexpr std::string_view name_begin = "tessera-gzip-";
 
 system::InflateLimit limit_of(const InputFile& packed, InflatedFile::Holds holds) {
@@ -40,7 +41,7 @@ InflatedFile::InflatedFile(const InputFile& file, const system::InflateLimit& li
   const system::PositionalFile packed(file.path);
   content_.size = system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.name);
   if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.name));
-  // By process id, because the helper opens it too.
+  // The path contains the process id, because the helper opens it, too.
   content_.path = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
   content_.is_gzip = false;
 }

@@ -16,7 +16,7 @@ namespace {
 /// Whether a file of `size` bytes is the pointer text that Git LFS stores instead of a large file.
 bool is_git_lfs_pointer(const system::PositionalFile& file, std::uint64_t size) {
   constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
-  constexpr std::uint64_t longest = 1024;  // by the specification of Git LFS
+  constexpr std::uint64_t longest = 1024;  // limit in the specification of Git LFS
   return size >= first_line.size() && size <= longest && file.beginning(first_line.size()) == first_line;
 }
 
@@ -52,7 +52,7 @@ std::string read_beginning(const std::filesystem::path& file, std::size_t limit)
 
 namespace {
 
-/// The first bytes of a file; empty if it cannot be read.
+/// Returns the first bytes of a file; empty if the file cannot be read.
 std::string beginning_if_any(const std::filesystem::path& file, std::uint64_t count) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return {};
@@ -81,7 +81,7 @@ bool is_input_folder(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) return false;
   if (is_case_folder(folder) || is_amrex_folder(folder)) return true;
-  // Slices are often one or two levels below, with other files next to them.
+  // Slices are often one or two levels below the directory, next to other files.
   constexpr int most = 1000;
   constexpr int deepest = 4;
   std::filesystem::recursive_directory_iterator entry(folder, error);

@@ -33,14 +33,14 @@ std::filesystem::path own_file() {
   std::error_code unknown;
   if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
     std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
-    if (!unknown) return file;  // a program's name need not lead to its file
+    if (!unknown) return file;  // the path under which a program was started may not lead to its file
   }
   return std::filesystem::read_symlink("/proc/self/exe", unknown);
 }
 
 bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
 
-/// Owner of a file, and whether all users may modify it.
+/// The owner of a file, and whether all users may modify the file.
 struct Ownership {
   uid_t owner;
   bool is_open_to_all;
@@ -51,8 +51,9 @@ std::optional<Ownership> ownership_of(const std::filesystem::path& file) {
   return Ownership{facts.st_uid, (facts.st_mode & S_IWOTH) != 0};
 }
 
-/// Whether no other user can have installed the reader, as anybody can create /tmp/libexec: root, this user or the
-/// owner of `own` owns it and the directories that contain it, and they are not more writable than `own`.
+/// Whether no other user can have installed the reader; any user can create /tmp/libexec, for example. The reader and
+/// the directories that contain it must belong to root, this user or the owner of `own`, and must not be more writable
+/// than `own`.
 bool is_trusted(const std::filesystem::path& program, const std::filesystem::path& own) {
   const auto self = ownership_of(own);
   const std::filesystem::path folder = program.parent_path();
@@ -64,7 +65,7 @@ bool is_trusted(const std::filesystem::path& program, const std::filesystem::pat
   return true;
 }
 
-/// An alternative for users without the reader.
+/// An alternative to suggest to users who do not have the reader.
 std::string other_remedy(Reader reader, const Format* format) {
   if (reader == Reader::tetgen) return "give a mesh of tetrahedra";
   if (reader == Reader::dicom) return "convert them to .nii.gz with dcm2niix";

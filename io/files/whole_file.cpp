@@ -15,7 +15,7 @@ namespace tessera::io {
 WholeFile::WholeFile(const std::filesystem::path& file) {
   const system::PositionalFile opened = open_input(file);
   size_ = opened.size();
-  // A file inflated by this process is in memory already, and no other process shortens it.
+  // A file inflated by this process is in memory already, and other processes cannot shorten it.
   const bool is_mapped = is_inflated(file);
   start_ = is_mapped ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, opened.descriptor(), 0)
                      : ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -44,7 +44,7 @@ bool holds_one_grid(const InputFile& file, const ForeignReader& by) {
 VolumeFile read_foreign_volume(const InputFile& file, const ForeignReader& by, const VolumeOptions& options) {
   if (by.program != Reader::dicom) require_recognized(file);
   VolumeOptions asked = options;
-  if (asked.field.starts_with('/')) asked.field.erase(0, 1);  // a path, as HDF5's tools print it
+  if (asked.field.starts_with('/')) asked.field.erase(0, 1);  // the field is a path, as HDF5's tools print it
   nlohmann::json request{{"field", asked.field}};
   if (asked.time_step) request["time_step"] = *asked.time_step;
   return grid_of(open_by(by, file, std::move(request), asked.progress), asked);

@@ -51,7 +51,7 @@ scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part
   return g;
 }
 
-/// Indices of the samples that the file hides by vtkGhostType: points, or cells for cell data.
+/// Indices of the samples (points, or cells for cell data) that the file hides by vtkGhostType.
 std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPart& part, Association association,
                                         const scene::GridGeometry& g, std::vector<std::string>& notes) {
   std::vector<std::size_t> hidden;
@@ -81,7 +81,7 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const cells::F
   const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, result.notes);
   const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : scene::sample_type_of(array->type);
   const SampleType type = plain.value_or(SampleType::float64);
-  // float32 represents numbers of up to 16 bits exactly, and magnitudes of floats.
+  // float32 represents numbers of up to 16 bits exactly, and is precise enough for magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
   if (plain && hidden.empty()) {
     grid.type = choice.component != cells::magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
@@ -127,7 +127,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
                  .length_unit = result.body_axes == BodyAxes::none ? "" : "mm",
                  .labels = opened.contents.labels};
 
-  cells::CellBlock block;  // only its fields are used
+  cells::CellBlock block;  // only the fields of the block are used
   std::size_t points = 1, cells = 1;
   for (const std::int64_t n : grid.geometry.points) {
     points *= static_cast<std::size_t>(std::max<std::int64_t>(n, 0));
@@ -147,7 +147,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with `field`", source));
   grid.geometry.association = choice.association;
   grid.field_name = choice.label;
-  scene::validate(grid, source);  // before allocating an array for samples that a flat grid does not have
+  scene::validate(grid, source);  // before memory for samples is allocated, which a flat grid does not have
   set_source(opened, part, choice, *field, options, std::move(grid), result);
   return result;
 }

@@ -56,7 +56,7 @@ ForeignFile open_exodus(const InputFile& file, const char* reader, const MeshOpt
   nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
   if (options.surfaces) request["surfaces"] = true;
   if (options.time_step) request["time_step"] = *options.time_step;
-  if (!options.field.empty()) request["field"] = options.field;  // for other kinds of HDF5
+  if (!options.field.empty()) request["field"] = options.field;  // needed by the readers of other kinds of HDF5
   return open_foreign(file, std::move(request), options.progress);
 }
 
@@ -90,7 +90,8 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options
     throw scene::bad_input(
         fmt::format("{}: it is a regular grid (image data), not a mesh; give it alone or among volumes", source));
   if (lists_pieces(file)) {
-    // Reads pieces one by one, so that the whole gives the same result as its parts, and errors name the piece.
+    // Reads pieces one by one, so that reading the whole gives the same result as reading parts, and errors name the
+    // piece.
     const PieceList list = piece_list(file, options.blocks, options.surfaces);
     return read_pieces(list, 0, list.pieces.size(), options.progress);
   }
@@ -122,7 +123,7 @@ cells::MeshBlocks read_exodus(const InputFile& file, const MeshOptions& options)
 
 scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& options) {
   if (const auto files = exodus_files(file); !files.empty())
-    return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // of the first file
+    return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // time step of the first file
   return open_exodus(file, "exodus", options).contents.time_step;
 }
 
@@ -143,7 +144,7 @@ cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options
 }
 
 cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options) {
-  // Valid files make VTK's reader crash.
+  // VTK's reader crashes even for some valid files.
   constexpr const char* remedy = "VTK's reader does not support all variants of it: export CGNS or EnSight";
   return read_foreign_mesh(file, {Reader::vtk, "fluent", remedy}, options);
 }

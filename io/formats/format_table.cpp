@@ -20,7 +20,7 @@ constexpr std::array by_vtk_and_tetgen = {Reader::vtk, Reader::tetgen};
 constexpr const char* filled = "closed; filled with tets, field depth in addition to its own";
 constexpr const char* pieces = "pieces fill the whole and have the same arrays";
 
-/// First the members of every row, then optional ones.
+/// The first parameters are members of every row, the last ones optional members.
 constexpr Format row(const char* name, const char* extensions, FileHolds holds, std::span<const Reader> needs,
                      const char* remark, decltype(Format::recognizes) recognizes, Format format = {}) {
   format.name = name, format.extensions = extensions, format.holds = holds;
@@ -28,13 +28,13 @@ constexpr Format row(const char* name, const char* extensions, FileHolds holds, 
   return format;
 }
 
-/// A known format that is refused by its name.
+/// A row for a known format that is not supported and is recognized by its name.
 constexpr Format unread(const char* name, const char* extensions, const char* remark,
                         decltype(Format::recognizes) recognizes = nullptr, Format format = {}) {
   return row(name, extensions, not_read, {}, remark, recognizes, format);
 }
 
-/// Rows that share a beginning are tried in this order.
+/// If several rows recognize a file, the first of them applies.
 constexpr std::array rows = {
     row("VTK XML unstructured grid", ".vtu .pvtu", mesh, {}, "pieces appended, ghost cells dropped; ranks read pieces",
         begins_as_vtu, {.container = Container::vtk_xml, .read_mesh = read_vtk_xml}),

@@ -20,8 +20,8 @@ bool has_extension(const Format& format, const std::string& extension) {
   return false;
 }
 
-/// The extension that decides: for x.nii.gz that of x.nii. Files of LS-DYNA's database, d3plot, d3plot01, ..., have
-/// none.
+/// Returns the extension that determines the format: for x.nii.gz that of x.nii. Files of LS-DYNA's database, d3plot,
+/// d3plot01, ..., do not have an extension.
 std::string extension_of(const std::filesystem::path& file) {
   if (file.filename().string().starts_with("d3plot")) return ".d3plot";
   const std::string extension = system::lower_extension(file);
@@ -42,7 +42,7 @@ const Format* recognized(const FileBeginning& start, const std::string& extensio
   return format_where([&](const Format& f) { return !f.by_name_too && begins(f); });
 }
 
-/// Whether HDF5 begins after a user block, whose size is 512 bytes or a power of two times that.
+/// Whether HDF5 begins after a user block, whose size is 512 times a power of two bytes.
 bool has_hdf5_behind_block(const system::PositionalFile& file) {
   std::string bytes(hdf5_signature.size(), '\0');
   for (std::uint64_t at = 512; at + bytes.size() <= file.size(); at *= 2) {

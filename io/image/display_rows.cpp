@@ -13,7 +13,8 @@
 namespace tessera::io {
 namespace {
 
-/// The first linear value of each code, and a table of equal parts of 0..1 with the code at the lower end of each.
+/// The smallest linear value of each code, and a table that contains, for equal parts of 0..1, the code at the lower
+/// end of each part.
 struct Codes {
   static constexpr int parts = 4096;
   std::array<double, 257> begin{};  ///< smallest linear value of each code; entry 256 is above all values
@@ -24,7 +25,8 @@ std::uint8_t by_formula(double linear) {
   return static_cast<std::uint8_t>(std::lround(colormaps::encode_srgb(linear) * 255));
 }
 
-/// Bisects over the doubles themselves, which are ordered like their bit patterns: exactly the result of the formula.
+/// Bisects the doubles in the order of their bit patterns, which is that of their values. The result is exactly that of
+/// the formula.
 Codes make_codes() {
   Codes codes;
   for (int code = 1; code < 256; ++code) {
@@ -46,7 +48,7 @@ std::uint8_t srgb_code(double linear) {
   static const Codes codes = make_codes();
   linear = std::clamp(linear, 0.0, 1.0);
   std::size_t code = codes.code[static_cast<std::size_t>(linear * Codes::parts)];
-  while (linear >= codes.begin[code + 1]) ++code;  // at most once: a part is narrower than the first code
+  while (linear >= codes.begin[code + 1]) ++code;  // at most one step: a part is narrower than the first code
   return static_cast<std::uint8_t>(code);
 }
 

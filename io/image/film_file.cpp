@@ -34,11 +34,11 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// ffmpeg's options for a kind of file: its format and its encoder.
+/// Options of ffmpeg for one kind of file: the format and the encoder.
 struct FilmKind {
   std::string_view extension, format;
-  bool is_video = true;           ///< else its frames use a colour palette
-  std::string_view quality = "";  ///< quality options of its encoder; without them it optimizes for small files
+  bool is_video = true;           ///< false: the frames use a colour palette
+  std::string_view quality = "";  ///< quality options of the encoder; its defaults optimize for small files
 };
 
 // Without a bit rate of 0, VP9 limits itself to a low rate whatever the frame size.
@@ -54,7 +54,7 @@ const FilmKind* kind_of(const std::filesystem::path& file) {
   return kind == kinds.end() ? nullptr : kind;
 }
 
-/// The program's path according to PATH; empty if not found.
+/// Returns the path of ffmpeg according to PATH; empty if it was not found.
 std::filesystem::path find_ffmpeg() {
   const char* const value = ::getenv("PATH");
   std::string_view path = value == nullptr ? "" : value;
@@ -113,8 +113,8 @@ std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, cons
                                     "-framerate", fmt::format("{:g}", options.frames_per_second),
                                     "-i",         "pipe:0"};
   if (kind.is_video) {
-    // Players expect chroma for pairs of pixels. Untagged, they interpret large frames as BT.709 and small ones as
-    // BT.601, while ffmpeg converts all to BT.601 without a tag.
+    // Players expect one chroma value for 2 x 2 pixels. Without a tag, they interpret large frames as BT.709 and small
+    // frames as BT.601, while ffmpeg converts all frames to BT.601 without adding a tag.
     words.insert(words.end(), {"-vf", fmt::format("pad=ceil(iw/2)*2:ceil(ih/2)*2:color={},scale=out_color_matrix=bt709:"
                                                   "out_range=tv,format=yuv420p",
                                                   ground_color(options.image))});
@@ -129,7 +129,7 @@ std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, cons
     words.emplace_back(left.substr(0, end));
     left.remove_prefix(std::min(end + 1, left.size()));
   }
-  // By descriptor: the unnamed file leaves nothing behind if this process is killed.
+  // The output is given by descriptor: an unnamed file does not remain if this process is killed.
   words.insert(words.end(), {"-f", std::string(kind.format), fmt::format("/proc/self/fd/{}", output)});
   return words;
 }
@@ -152,7 +152,7 @@ struct FilmFile::State {
   State& operator=(const State&) = delete;
 
   void start(const std::filesystem::path& program);
-  /// To be called before waiting for its end; afterwards its process id may belong to another process.
+  /// Must be called before waiting for ffmpeg to end; afterwards its process id may belong to another process.
   void forget_process() const {
     const auto lock = system::naming_outputs();
     system::remove_unfinished(process);
@@ -160,7 +160,7 @@ struct FilmFile::State {
   /// Closes the stream of frames and waits for ffmpeg to end. Throws if it fails.
   void end();
   [[noreturn]] void fail(const std::string& what) const;
-  /// The last line that ffmpeg printed.
+  /// Returns the last line that ffmpeg printed.
   [[nodiscard]] std::string last_words() const;
 
   std::filesystem::path file;
@@ -174,7 +174,7 @@ struct FilmFile::State {
 
 void FilmFile::State::start(const std::filesystem::path& program) {
   std::array<int, 2> ends{};
-  // A socket: writing after the reader has closed it returns an error instead of killing this process.
+  // A socket, because writing to a closed socket returns an error, while a closed pipe would kill this process.
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(std::strerror(errno));
   pictures = system::Descriptor(ends[0]);
   const system::Descriptor theirs(ends[1]);
@@ -182,7 +182,8 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   if (!complaints.is_open()) fail(std::strerror(errno));
 
   constexpr int output = 3;
-  // Duplicates first, above all descriptors assigned below: the originals may have one of those numbers.
+  // The descriptors are first duplicated to numbers above all those assigned below, because the originals may have one
+  // of these numbers.
   const system::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
       err(::fcntl(complaints.get(), F_DUPFD_CLOEXEC, 10)), out(::fcntl(target.descriptor(), F_DUPFD_CLOEXEC, 10));
   if (!in.is_open() || !err.is_open() || !out.is_open()) fail(std::strerror(errno));
@@ -192,7 +193,7 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_adddup2(&plan.files, out.get(), output);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, output + 1);  // for example sockets of a server
-  plan.set_own_group();  // Ctrl-C is handled by this program, whose end closes ffmpeg's input
+  plan.set_own_group();  // this program handles Ctrl-C; when it ends, ffmpeg's input is closed
   const int failed = plan.start(program, ffmpeg_words(*kind_of(file), size, options, output), environ, process);
   if (failed != 0) {
     process = -1;
@@ -218,7 +219,7 @@ void FilmFile::State::fail(const std::string& what) const {
 void FilmFile::State::end() {
   pictures = system::Descriptor();
   int status = 0;
-  // Waits first and reaps only after abandon_outputs() can no longer kill it.
+  // Waits for the end first, and reaps the process only after abandon_outputs() can no longer kill it.
   siginfo_t ended{};
   while (::waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
   }

@@ -139,7 +139,7 @@ void check_image_path(const std::filesystem::path& file) {
     throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
   if (image_format_of(file) == ImageFormat::tiff && !has_tiff())
     throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
-  // The only test that is valid for every file system and user: create such a file and discard it.
+  // Creates a file of this kind and discards it, the only test that is valid for every file system and user.
   system::check_writable(file);
 }
 

@@ -18,7 +18,8 @@
 namespace tessera::io {
 namespace {
 
-/// libjpeg reports errors by longjmp, which must not skip C++ destructors: functions that call it own nothing.
+/// libjpeg reports errors by longjmp, which must not skip C++ destructors: functions that call libjpeg have no local
+/// objects with destructors.
 struct Jpeg {
   jpeg_compress_struct compress{};
   jpeg_error_mgr errors{};
@@ -58,7 +59,7 @@ bool begin(Jpeg& jpeg, int width, int height, int quality) {
   jpeg.compress.in_color_space = JCS_RGB;
   jpeg_set_defaults(&jpeg.compress);
   jpeg_set_quality(&jpeg.compress, quality, TRUE);
-  // No chroma subsampling: volume renderings have thin coloured lines.
+  // No chroma subsampling, because volume renderings have thin coloured lines.
   jpeg.compress.comp_info[0].h_samp_factor = jpeg.compress.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&jpeg.compress, TRUE);
   return true;

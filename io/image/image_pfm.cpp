@@ -18,8 +18,8 @@ namespace tessera::io {
 
 static_assert(std::endian::native == std::endian::little, ".pfm is written as memory holds it");
 
-// Source of the format: Debevec's HDRShop: "PF", width and height, a scale whose sign gives the byte order (negative:
-// little endian), each followed by one white space, then rows of RGB floats from the bottom up.
+// The format: "PF", width and height, and a scale whose sign gives the byte order (negative: little endian), each
+// followed by one white space, then rows of RGB floats from the bottom up. Source: Debevec's HDRShop.
 
 void write_pfm(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   system::AtomicFile target(file);
@@ -49,7 +49,7 @@ scene::Image read_pfm(const std::filesystem::path& file) {
   if (!width || !height || !scale || *scale == 0 || *width != std::floor(*width) || *height != std::floor(*height) ||
       !(*width >= 1 && *width <= scene::max_image_side) || !(*height >= 1 && *height <= scene::max_image_side))
     throw fault("has a broken header; it is `PF`, width and height, and a scale");
-  // Before allocating: a header may claim more than the file contains.
+  // Checked before allocating: a header may state more pixels than the file contains.
   const auto expected = static_cast<std::uintmax_t>(*width * *height) * 3 * sizeof(float);
   const auto begin = static_cast<std::uintmax_t>(stream.tellg());
   if (const auto bytes = std::filesystem::file_size(file); bytes != begin + expected)

@@ -25,12 +25,12 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Write = std::function<void(const void*, std::size_t)>;
 
-// Trying all filters for every row took as long as compression and saved 2 %.
+// The only filter. Trying all filters for every row took as long as compression and saved 2 %.
 constexpr std::uint8_t filter_up = 2;
 
 struct Strip {
   Bytes deflated;
-  uLong adler = 0;  ///< of its filtered rows
+  uLong adler = 0;  ///< checksum of the filtered rows
   uLong length = 0;
 };
 
@@ -43,7 +43,7 @@ void write_chunk(const Write& write, std::string_view name, const Bytes& content
   append_be32(head, static_cast<std::uint32_t>(content.size()));
   head.insert(head.end(), name.begin(), name.end());
   uLong crc = crc32(0, head.data() + 4, 4);
-  // Without bytes zlib would return the initial value.
+  // For an empty content, zlib would return the initial value instead of `crc`.
   if (!content.empty()) crc = crc32(crc, content.data(), static_cast<uInt>(content.size()));
   Bytes tail;
   append_be32(tail, static_cast<std::uint32_t>(crc));
@@ -52,7 +52,8 @@ void write_chunk(const Write& write, std::string_view name, const Bytes& content
   write(tail.data(), tail.size());
 }
 
-/// Raw deflate blocks; those of all strips but the last end with an empty block that pads to a byte.
+/// Compresses rows to raw deflate blocks. The blocks of all strips except the last end with an empty block that pads to
+/// a whole byte.
 Bytes deflated(const Bytes& rows, bool is_last) {
   z_stream stream{};
   constexpr int raw_32k = -15, memory_level = 8;
@@ -62,8 +63,8 @@ Bytes deflated(const Bytes& rows, bool is_last) {
     z_stream& stream;
     ~End() { deflateEnd(&stream); }
   } const end{stream};
-  Bytes out(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);  // plus the empty block
-  stream.next_in = const_cast<Bytef*>(rows.data());                        // zlib only reads it
+  Bytes out(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);  // 16 bytes for the empty block
+  stream.next_in = const_cast<Bytef*>(rows.data());                        // zlib only reads the input
   stream.avail_in = static_cast<uInt>(rows.size());
   stream.next_out = out.data();
   stream.avail_out = static_cast<uInt>(out.size());
@@ -73,7 +74,7 @@ Bytes deflated(const Bytes& rows, bool is_last) {
   return out;
 }
 
-/// Rows [begin, end), each preceded by its filter type.
+/// Returns rows [begin, end), each preceded by the type of its filter.
 Bytes filtered_rows(const DisplayRows& display, int begin, int end) {
   const std::size_t row_bytes = display.row_bytes();
   Bytes rows(static_cast<std::size_t>(end - begin) * (row_bytes + 1));

@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// Output of libtiff. No exception may propagate through its C frames: the first error is stored.
+/// Output of libtiff. Exceptions must not propagate through libtiff's C functions: the first error is stored.
 struct Target {
   explicit Target(const std::filesystem::path& path) : file(path) {}
 
@@ -72,7 +72,7 @@ int on_warning(TIFF* /*tiff*/, void* /*handle*/, const char* /*module*/, const c
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-/// Null if memory runs out. `large`: BigTIFF for files over 4 GiB, which few readers supported before 2010.
+/// Returns null if memory runs out. `large`: BigTIFF for files over 4 GiB, which few readers supported before 2010.
 Tiff open(Target& target, const char* name, bool large) {
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
                                                                                  &TIFFOpenOptionsFree);
@@ -134,7 +134,7 @@ void write_tiff(const scene::Image& image, const std::filesystem::path& file, co
   }
   check(TIFFWriteDirectory(tiff.get()) == 1);
   tiff.reset();
-  check(target.message.empty());  // closing writes too, and does not report errors
+  check(target.message.empty());  // closing writes, too, and does not report errors
   target.file.commit();
 }
 

@@ -48,7 +48,7 @@ void add_fields_of_image(const OpenedAmrBlock& block, cells::CellBlock& fields, 
   add_foreign_fields(*block.file, part, Association::cell, product(cells), fields, source);
 }
 
-/// The fields, whose sizes are compared with the block's extent or the number of leaves.
+/// Returns the fields of a block after comparing their sizes with the block's extent or the number of leaves.
 cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& source) {
   const ForeignPart& part = *block.part;
   cells::CellBlock fields;
@@ -57,12 +57,12 @@ cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& sourc
     add_foreign_fields(*block.file, part, Association::cell, part.types ? part.types->tuples : 0, fields, source);
   else
     add_fields_of_image(block, fields, source);
-  if (fields.fields.empty())  // bounds the extent by the file
+  if (fields.fields.empty())  // the sizes of fields bound the extent by the size of the file
     throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with one", source));
   return fields;
 }
 
-/// The numbers of an array of T; empty if it has another type or is missing.
+/// Reads the numbers of an array of T; empty if the array has another type or is missing.
 template <class T>
 std::optional<std::vector<T>> numbers_as(const OpenedAmrBlock& block, const std::optional<ForeignArray>& array,
                                          NumberType type, int components, const std::string& source) {
@@ -99,7 +99,7 @@ cells::AmrBlock described(const OpenedAmrBlock& block, const std::string& source
   return amr;
 }
 
-/// The chosen field's numbers of one block; empty if the block does not have it.
+/// Reads the numbers of the chosen field in one block; empty if the block does not have the field.
 std::vector<double> numbers_in(const cells::CellBlock& block, const cells::FieldChoice& choice) {
   std::vector<double> numbers;
   if (const cells::BlockField* const field = cells::find_field(block, choice.name, choice.association)) {
@@ -109,7 +109,7 @@ std::vector<double> numbers_in(const cells::CellBlock& block, const cells::Field
   return numbers;
 }
 
-/// Cell data of the leaves. Blocks without the field have no values.
+/// Returns the cell data of the leaves. Blocks without the field have no values.
 std::vector<double> values_of_leaves(std::span<const cells::CellBlock> fields, const cells::AmrLeaves& amr,
                                      const cells::FieldChoice& choice) {
   std::vector<double> values(amr.leaves.size(), no_value);
@@ -220,7 +220,7 @@ cells::MeshBlocks read_amrex(const InputFile& file, const MeshOptions& options) 
 
 cells::MeshBlocks read_amr_list(const InputFile& file, const MeshOptions& options) {
   if (!has_reader(Reader::vtk))
-    throw missing_reader(Reader::vtk, file.name, file.format);  // otherwise an error names a block
+    throw missing_reader(Reader::vtk, file.name, file.format);  // otherwise the error would name a block
   return mesh_of(open_amr_list(file), options, file.name);
 }
 

@@ -20,7 +20,7 @@
 namespace tessera::io {
 namespace {
 
-/// Storage format of numbers, as declared in the line before them.
+/// The storage format of numbers, which the line before the numbers declares.
 struct NumberFormat {
   std::string_view words;
   std::size_t bytes;
@@ -33,7 +33,7 @@ constexpr std::array formats = {
     NumberFormat{"((8, (32 8 23 0 1 9 0 127)),(4, (1 2 3 4)))", 4, true},
 };
 
-/// The numbers of one field of one box, in a file that is opened for each read: there may be more files than the
+/// The numbers of one field of one box. The file is opened for each read, because there may be more files than the
 /// process may open at once.
 struct FabNumbers {
   std::filesystem::path file;
@@ -42,7 +42,7 @@ struct FabNumbers {
   bool swap = false;
   AmrexBox box, stored;
 
-  /// Reads the numbers of the box's cells, x fastest; the stored array may cover cells around them.
+  /// Reads the numbers of the box's cells, x fastest. The stored array may include cells around the box.
   void read(std::size_t first, std::span<double> out) const {
     const auto nx = static_cast<std::size_t>(box.cells(0)), ny = static_cast<std::size_t>(box.cells(1)),
                row = static_cast<std::size_t>(stored.cells(0)), slice = row * static_cast<std::size_t>(stored.cells(1));
@@ -55,7 +55,7 @@ struct FabNumbers {
     const system::PositionalFile opened(file);
     std::vector<std::byte> stored_bytes;
     for (std::size_t n = 0; n < out.size();) {
-      // Extends the read over rows while the gaps between them are not most of it.
+      // Extends the read over several rows as long as the gaps between the rows are not most of the bytes.
       std::size_t end = n + std::min(nx - (first + n) % nx, out.size() - n);
       const std::size_t begin = place_of(first + n);
       while (end < out.size()) {
@@ -136,7 +136,7 @@ class PlotFile {
     return block;
   }
 
-  /// Parses FAB, the format of numbers, the box and the number of fields; the numbers follow.
+  /// Parses the line before the numbers: FAB, the format of numbers, the box and the number of fields.
   FabNumbers numbers_of(AmrexFab& fab, const std::filesystem::path& file) {
     const system::PositionalFile opened(file);
     const auto [known_file, is_new] = files_.try_emplace(file.string(), opened.size());
@@ -177,7 +177,7 @@ class PlotFile {
       throw refuse(fmt::format("{} bytes of values begin there, the file has {} bytes; it is truncated, write it again",
                                bytes, size));
     bytes_used_ += bytes;
-    if (bytes_used_ > bytes_there_)  // so that the memory per box is proportional to the files
+    if (bytes_used_ > bytes_there_)  // bounds the memory per box by the size of the files
       throw refuse("boxes share their values; it is damaged, write it again");
     return {file, begin, format->bytes, scene::is_swapped(format->big_endian), fab.box, fab.stored};
   }

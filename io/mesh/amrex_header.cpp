@@ -14,12 +14,13 @@ namespace {
 
 constexpr std::int64_t most_fields = 1 << 16, most_boxes = 1 << 20, most_levels = 64, most_cells = 1 << 29;
 
-/// Parses words, and lines where positions are fixed. Brackets and commas separate words.
+/// Parses the text word by word, or by lines where the format requires a position. Brackets and commas separate words,
+/// too.
 class Words {
  public:
   Words(std::string_view text, const std::string& source) : scanner_(text, source, " \t\r\n(),") {}
 
-  /// The rest of the line; continues with the next.
+  /// Returns the rest of the line and moves to the next line.
   std::string_view line() { return scanner_.rest_of_line(); }
 
   std::string_view word(const char* what) {
@@ -44,7 +45,8 @@ class Words {
     return *number;
   }
 
-  /// ((0,0,0) (7,7,7) (0,0,0)): the first cell, the last, and the axes along which the box has nodes instead of cells.
+  /// Parses ((0,0,0) (7,7,7) (0,0,0)): the first cell, the last cell, and the axes along which the box has nodes
+  /// instead of cells.
   AmrexBox box(const char* what) {
     AmrexBox box;
     for (std::int64_t& n : box.low) n = count(what, -most_cells, most_cells);
@@ -114,7 +116,7 @@ std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t field
   words.word("the number of cells around a box");
   const auto boxes = words.count("the number of boxes", 1, most_boxes);
   words.word("the number after that of boxes");
-  std::vector<AmrexFab> fabs;  // grows as boxes are found
+  std::vector<AmrexFab> fabs;  // grows as boxes are parsed, not by the stated count
   for (std::int64_t n = 0; n < boxes; ++n) fabs.emplace_back().box = words.box("a box");
   words.count("the number of boxes' values", boxes, boxes);
   for (AmrexFab& fab : fabs) {

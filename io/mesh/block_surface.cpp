@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// The corners of a two-dimensional cell in order around it; empty for other cells.
+/// Returns the corners of a two-dimensional cell in order around the cell; empty for other cells.
 std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32_t> points) {
   std::size_t corners = 0;
   switch (CellType{type}) {
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32
     case CellType::polygon:
       corners = points.size();
       break;
-    case CellType::quadratic_polygon:  // corners, then as many mid-edge nodes
+    case CellType::quadratic_polygon:  // the corners, then the same number of mid-edge nodes
       corners = points.size() / 2;
       break;
     default:
@@ -88,7 +88,7 @@ class Faces {
       has_values_ = false;
   }
 
-  /// Adds a face with points of its own, because a shared point would have several values of cell data.
+  /// Adds a face with its own points, because a shared point would have several values of cell data.
   void add_face(const cells::CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
                 const std::string& source) {
     triangles_.clear();

@@ -58,7 +58,7 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
 }
 
 void add_block(ListedPiece listed, const cells::BlockChoice& choice, PieceList& list) {
-  if (!cells::is_chosen(choice, listed.block)) {  // and its file is not inspected, so it may be a surface
+  if (!cells::is_chosen(choice, listed.block)) {  // the file of the block is not inspected, so it may be a surface
     list.block_names.push_back(listed.block);
     return;
   }
@@ -78,7 +78,7 @@ void add_block(ListedPiece listed, const cells::BlockChoice& choice, PieceList& 
 }
 
 void add_blocks(const std::filesystem::path& file, const cells::BlockChoice& choice, PieceList& list) {
-  std::vector<std::string> path;  // stack of block names, by depth
+  std::vector<std::string> path;  // stack of block names, from the outermost to the innermost
   std::size_t count = 0;
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
     const std::string* const own = element.find("name");
@@ -86,7 +86,7 @@ void add_blocks(const std::filesystem::path& file, const cells::BlockChoice& cho
     path.push_back(own != nullptr ? *own : "");
     if (element.name != "DataSet") return;
     const std::string* const listed = element.find("file");
-    if (listed == nullptr || listed->empty()) return;  // an empty block, such as a rank may write
+    if (listed == nullptr || listed->empty()) return;  // an empty block, which a rank may write
     std::string name;
     for (const std::string& word : path)
       if (!word.empty()) name += (name.empty() ? "" : "/") + word;

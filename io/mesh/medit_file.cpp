@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int32_t code_dimension = 3, code_vertices = 4, code_end = 54, last_known_code = 250;
 
-/// A keyword of cells and their type.
+/// A keyword for cells, and the type of these cells.
 struct MeditCells {
   std::int32_t code;
   std::string_view word;
@@ -36,7 +36,7 @@ constexpr std::array<MeditCells, 5> medit_cells = {{{8, "Tetrahedra", CellType::
                                                     {49, "Pyramids", CellType::pyramid, 5},
                                                     {30, "TetrahedraP2", CellType::quadratic_tetra, 10}}};
 
-/// Volume cells and node orders that are not supported.
+/// Keywords of volume cells and node orders that are not supported.
 constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells = {{{33, "hexahedra of order 2"},
                                                                                      {46, "polyhedra"},
                                                                                      {86, "prisms of order 2"},
@@ -166,7 +166,7 @@ class MeditBinary {
   std::vector<std::int64_t> references_;  ///< per cell
 };
 
-/// Words separated by any blanks; line ends matter only as the end of a comment.
+/// Words separated by blanks of any kind; line ends matter only because they end comments.
 class MeditText {
  public:
   MeditText(std::string_view text, const std::string& source)
@@ -175,7 +175,7 @@ class MeditText {
   }
 
   std::vector<cells::CellBlock> blocks() {
-    std::string_view list;  // the list just read
+    std::string_view list;  // name of the list that was just read
     for (std::string_view word = scanner_.word(); !word.empty() && word != "End"; word = scanner_.word()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
         fail(fmt::format("the number '{}' follows the last of the {}: each has more numbers than this keyword allows",

@@ -42,14 +42,14 @@ struct MeshPartReading::State {
   ReadOptions options;
   cells::MeshBlocks blocks;
   std::vector<cells::FieldTally> tallies;
-  scene::Box box;  ///< of the part, later of all parts
+  scene::Box box;  ///< box of this part
   std::vector<cells::FieldSummary> fields;
   cells::FieldChoice choice;
   cells::CurvedSettings asked;
   // For a .tets file:
   std::vector<std::uint32_t> file_vertex;
   std::uint64_t file_vertices = 0;
-  bool counts_points = true;  ///< true in the first part, which counts the points for all
+  bool counts_points = true;  ///< the first part counts the points for all
 
   void read_tets(int part, int parts) {
     const std::string& source = file.name;
@@ -61,7 +61,7 @@ struct MeshPartReading::State {
     file_vertex = std::move(range.file_vertex);
     file_vertices = header.vertices;
     counts_points = part == 0;
-    // The tally covers all vertices, used or not: each part tallies its share.
+    // The tally covers all vertices, used or not; each part tallies its share of them.
     const std::uint64_t first = cells::first_of_part(header.vertices, part, parts);
     cells::BlockField share;
     share.name = "scalar";
@@ -79,7 +79,7 @@ struct MeshPartReading::State {
     blocks = read_pieces(list, cells::first_of_part(list.pieces.size(), part, parts),
                          cells::first_of_part(list.pieces.size(), part + 1, parts), options.progress);
     blocks.block_names = cells::distinct_names(std::move(blocks.block_names));
-    if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as in read_mesh
+    if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // a single block has no name, as in read_mesh
       for (cells::CellBlock& block : blocks.blocks) block.name.clear();
     if (part > 0) blocks.block_names.clear();
     tallies = cells::tally_fields(blocks.blocks);

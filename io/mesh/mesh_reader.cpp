@@ -30,7 +30,7 @@ void keep_chosen(cells::MeshBlocks& read, const cells::BlockChoice& choice) {
     for (cells::CellBlock& block : read.blocks) block.name.clear();
 }
 
-/// Calls a function of the file's format, with the content if it is a gzip file.
+/// Calls a function of the file's format; for a gzip file, with its content.
 template <class Read>
 auto read_content(const InputFile& file, const Read& read) {
   if (!file.is_gzip) return read(file);
@@ -87,7 +87,7 @@ cells::MeshBlocks read_pieces(std::span<const InputFile> files, const MeshOption
   return all;
 }
 
-/// The options that still apply after the blocks were read.
+/// Returns the options that still apply after the blocks were read.
 ReadOptions options_after(const cells::MeshBlocks& read, ReadOptions options) {
   if (read.fields.empty()) return options;
   options.smooth = false;

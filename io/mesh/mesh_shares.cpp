@@ -37,7 +37,8 @@ int number_in(const std::string& digits) {
   return number;
 }
 
-/// The helper's reader of a file that may be Exodus, chosen by its first bytes; null: not Exodus.
+/// Returns the helper's reader of a file that may be Exodus, according to the first bytes; null: the file is not
+/// Exodus.
 const char* exodus_reader(const FileBeginning& start) {
   return begins_as_exodus(start) ? "exodus" : begins_as_hdf5(start) ? "hdf5" : nullptr;
 }

@@ -14,7 +14,7 @@
 namespace tessera::io {
 namespace {
 
-/// Converts a double to the format's float32. Values that readers blank (NaN, infinite) stay blank.
+/// Converts a double to the format's float32. NaN and infinity, which readers treat as blank, are preserved.
 float to_float(double value, const std::string& file) {
   if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
     throw scene::bad_input(
@@ -22,7 +22,7 @@ float to_float(double value, const std::string& file) {
   return static_cast<float>(value);
 }
 
-/// Buffers small pieces so that the file receives few writes.
+/// Collects small pieces so that there are few writes to the file.
 class Chunks {
  public:
   explicit Chunks(system::AtomicFile& file) : file_(file) {}

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t small_field = 8, large_field = 16, fields_a_line = 8;
 
-/// A line's fields; the first is the name or a continuation mark.
+/// Returns the fields of a line. The first is the name or a continuation mark.
 std::vector<std::string> deck_fields(std::string_view line) {
   std::vector<std::string> fields;
   if (line.find(',') != std::string_view::npos) {
@@ -44,7 +44,7 @@ std::vector<std::string> deck_fields(std::string_view line) {
       fields.emplace_back(trimmed(all.substr(at, width)));
   }
   const std::size_t most = fields[0].find('*') != std::string::npos ? fields_a_line / 2 : fields_a_line;
-  // The last field of a line is a continuation mark. Some writers continue after it.
+  // The last field of a line is a continuation mark. Some writers continue the line after the mark.
   if (const std::size_t mark = most + 1; fields.size() > mark + 1) {
     if (fields[mark].empty() || fields[mark][0] == '+' || fields[mark][0] == '*')
       fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(mark));
@@ -100,7 +100,7 @@ void NastranEntry::replicate(const NastranEntry& before) {
                          name_));
     if (written == "=") {
       fields_[k] = copy(k);
-    } else if (written == "==") {  // to the end of this line; on the last line, to the end of the entry
+    } else if (written == "==") {  // repeats fields to the end of the line; in the last line, of the entry
       std::size_t end = (k / fields_a_line + 1) * fields_a_line;
       if (end >= fields_.size()) fields_.resize(end = std::max(end, before.fields_.size()));
       for (; k < end; ++k) fields_[k] = copy(k);
@@ -126,7 +126,7 @@ class NastranDeck {
 
   void read(const std::filesystem::path& file) {
     constexpr std::size_t most_deep = 64;
-    std::error_code has_no_path;  // for example the content of a gzip file
+    std::error_code has_no_path;  // set for example for the content of a gzip file
     const std::filesystem::path path = std::filesystem::canonical(file, has_no_path);
     if (!seen_.insert(has_no_path ? file.string() : path.string()).second) return;
     if (++depth_ > most_deep)
@@ -170,7 +170,7 @@ class NastranDeck {
   }
 
  private:
-  /// The next line without its comment.
+  /// Returns the next line without its comment.
   static std::string next_line(std::string_view& text, std::size_t& number) {
     const std::size_t end = text.find('\n');
     const std::string_view line = text.substr(0, end);
@@ -186,7 +186,7 @@ class NastranDeck {
     if (second.empty()) return line.empty() || line[0] == ' ' || line[0] == '\'' || line[0] == '"' || line[0] == '\t';
     return equals_ignoring_case(trimmed(line).substr(0, second.size()), second);
   }
-  /// BEGIN SUPER=1, BEGIN BULK SUPER=1
+  /// Accepts BEGIN SUPER=1 and BEGIN BULK SUPER=1.
   static bool begins_part(std::string_view line, std::string_view part) {
     if (!has_words(line, "BEGIN", "")) return false;
     line = trimmed(trimmed(line).substr(5));
@@ -201,7 +201,7 @@ class NastranDeck {
     return false;
   }
 
-  /// A file name without quotes ends with its line.
+  /// A file name without quotes ends with the line.
   static bool has_both_quotes(std::string_view line) {
     const std::size_t quote = line.find_first_of("'\"");
     return quote == std::string_view::npos || line.find(line[quote], quote + 1) != std::string_view::npos;
@@ -218,7 +218,7 @@ class NastranDeck {
     std::error_code unknown;
     const std::filesystem::path file = from.parent_path() / std::filesystem::path(name);
     const bool is_there = !name.empty() && std::filesystem::is_regular_file(file, unknown);
-    if (!is_there && !is_bulk_) return;  // in the executive or case control section, which has no mesh
+    if (!is_there && !is_bulk_) return;  // there is no mesh in the executive or case control section
     if (!is_there)
       throw scene::bad_input(fmt::format("{}: line {}: it includes {}, and there is no such file; put it there",
                                          from.string(), number, scene::quote(name)));

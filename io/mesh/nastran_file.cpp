@@ -21,7 +21,7 @@
 namespace tessera::io {
 namespace {
 
-/// An edge with a mid-edge node, and the position of that node in Nastran's order.
+/// An edge with a mid-edge node: its corners, and the position of the node in Nastran's order.
 struct NastranEdge {
   std::size_t from, to, node;
 };
@@ -30,7 +30,7 @@ struct SolidElement {
   std::string_view name;
   std::size_t corners;
   CellType linear_type, curved_type;
-  std::vector<NastranEdge> edges;  ///< in VTK's order
+  std::vector<NastranEdge> edges;  ///< edges in VTK's order
 };
 
 SolidElement solid_of(std::string_view name, cells::CurvedFamily shape, std::size_t nodes) {
@@ -62,7 +62,7 @@ const SolidElement* solid_element(std::string_view name) {
   return found == elements.end() ? nullptr : found;
 }
 
-/// Elements as listed in the deck: their nodes are GRID ids, 0 if omitted.
+/// Elements as listed in the deck. Their nodes are GRID ids; 0 is an omitted node.
 struct DeckElements {
   std::vector<const SolidElement*> kinds;
   std::vector<std::int64_t> ids, properties, nodes;

@@ -128,11 +128,11 @@ glm::dvec3 NastranSystems::in_basic(std::int64_t id, const glm::dvec3& p, const 
   if (id == 0) return p;
   const System& of = system(id, user);
   glm::dvec3 own = p;
-  if (of.kind == Kind::cylindrical) {  // radius, angle from x, height
+  if (of.kind == Kind::cylindrical) {  // coordinates: radius, angle from x, height
     const glm::dvec2 around = p.x * direction(p.y);
     own = {around.x, around.y, p.z};
   }
-  if (of.kind == Kind::spherical) {  // radius, angle from z, angle from x
+  if (of.kind == Kind::spherical) {  // coordinates: radius, angle from z, angle from x
     const glm::dvec2 up = p.x * direction(p.y), around = up.y * direction(p.z);
     own = {around.x, around.y, up.x};
   }

@@ -17,14 +17,15 @@
 namespace tessera::io {
 namespace {
 
-/// Walks through a file's records under an assumed layout; `good` becomes false if they do not match it.
+/// Reads the records of a file under the assumption of a layout; `good` becomes false if the records do not match the
+/// layout.
 class Walk {
  public:
   Walk(std::ifstream& in, std::uint64_t size, const Plot3dLayout& layout) : in_(in), size_(size), layout_(layout) {}
 
   bool good = true;
 
-  /// The next int32, inside a record.
+  /// Reads the next int32, inside a record.
   std::int32_t number() {
     std::int32_t value = 0;
     if (!fits(4)) return 0;
@@ -39,7 +40,7 @@ class Walk {
     if (fits(bytes)) at_ += bytes;
   }
 
-  /// A record mark, which must equal the record's length.
+  /// Reads a record mark, which must equal the length of the record.
   void mark(std::uint64_t bytes) {
     if (!layout_.record_marks) return;
     if (static_cast<std::uint32_t>(number()) != bytes) good = false;
@@ -54,7 +55,7 @@ class Walk {
   [[nodiscard]] bool at_end() const { return good && at_ == size_; }
   [[nodiscard]] std::uint64_t left() const { return size_ - at_; }
 
-  /// Number of grids, then each grid's points along i, j, k.
+  /// Reads the number of grids, then the number of points along i, j, k of each grid.
   std::vector<std::array<std::int32_t, 3>> dimensions() {
     std::int32_t grids = 1;
     if (layout_.multi_grid) {
@@ -62,7 +63,7 @@ class Walk {
       grids = number();
       mark(4);
     }
-    // Each grid has at least the 12 bytes of its dimensions, which bounds the allocation.
+    // Each grid takes at least the 12 bytes of its dimensions, which bounds the allocation.
     if (!good || grids < 1 || static_cast<std::uint64_t>(grids) > size_ / 12) {
       good = false;
       return {};
@@ -79,11 +80,11 @@ class Walk {
     return result;
   }
 
-  /// Number of points of a grid; 0 if the file is too small for them.
+  /// Returns the number of points of a grid; 0 if the file is too small for them.
   std::uint64_t points(const std::array<std::int32_t, 3>& n) {
     std::uint64_t product = 1;
     for (const std::int32_t side : n) {
-      product *= static_cast<std::uint64_t>(side);  // both factors are below 2^32: size_ bounds each product
+      product *= static_cast<std::uint64_t>(side);  // both factors are below 2^32, because size_ bounds each product
       if (product > size_ || product > UINT32_MAX) {
         good = false;
         return 0;
@@ -103,7 +104,7 @@ class Walk {
   const Plot3dLayout& layout_;
 };
 
-/// With `by_planes` each plane of a grid is a record.
+/// Whether the grid file has this layout. With `by_planes` each plane of a grid is a record.
 bool grid_fits(std::ifstream& in, std::uint64_t size, Plot3dLayout& layout, bool by_planes = false) {
   Walk walk(in, size, layout);
   layout.grids = walk.dimensions();

@@ -36,7 +36,8 @@ std::uint64_t count_numbers(std::string_view text, const std::string& source) {
   return count;
 }
 
-/// The grids at the beginning of a file, with at most `most` points in total; no value if it does not begin with grids.
+/// Parses the dimensions of the grids at the beginning of a file. No value if they are missing or the grids have more
+/// than `most` points in total.
 std::optional<std::vector<std::array<std::int32_t, 3>>> grids_of(TextScanner& words, bool multi_grid,
                                                                  std::uint64_t most) {
   std::int32_t count = 1;
@@ -66,7 +67,7 @@ std::uint64_t header_numbers(const Plot3dLayout& layout) {
   return (layout.multi_grid ? 1 : 0) + 3 * std::uint64_t{layout.grids.size()};
 }
 
-/// IBLANK must be integers: the reader would stop inside other numbers.
+/// IBLANK must be integers, because the reader would stop inside other numbers.
 void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, const std::string& source) {
   TextScanner words = words_of(text, source);
   for (std::uint64_t k = header_numbers(layout); k > 0; --k) words.word();

@@ -28,7 +28,7 @@ constexpr scene::NumberTypeNames ply_types[] = {
 struct Property {
   std::string name;
   NumberType type = NumberType::float32;
-  std::optional<NumberType> count;  ///< a list: the type of its length
+  std::optional<NumberType> count;  ///< type of the length, if the property is a list
 };
 
 struct Element {
@@ -127,7 +127,7 @@ class PlyParser {
       }
     }
     if (vertex && (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)) fail("its vertices have no x, y and z");
-    // A second vertex list would leave the attributes of the first shorter than the points.
+    // A second list of vertices would make the attributes of the first list shorter than the list of points.
     if (vertex && !result_.surface.points.empty()) fail("it holds two lists of vertices");
     if (face && corners < 0) fail("its faces have no vertex_indices");
     for (std::uint64_t n = 0; n < element.count; ++n) {

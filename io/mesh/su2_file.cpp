@@ -46,7 +46,7 @@ class Lines {
     if (!next()) fail(fmt::format("the file ends at {} {} of {}; it is truncated, write it again", what, k, count));
   }
 
-  /// The word before '=' on this line; empty if there is none. number() reads what follows.
+  /// Returns the word before '=' on this line; empty if there is none. number() then reads the text after it.
   std::string_view key() { return scanner_.word_before('='); }
 
   template <class T>
@@ -56,12 +56,12 @@ class Lines {
     if (found == Scanned::nothing) fail(fmt::format("{} is missing; write it again", what));
     if (found == Scanned::other_word)
       fail(fmt::format("'{}' is not a {}; correct it", scanner_.word().substr(0, 20), what));
-    // 1e999 becomes NaN: such a cell is blanked.
+    // 1e999 becomes NaN: a cell with this number is blanked.
     if (found == Scanned::out_of_range && std::is_integral_v<T>) fail(fmt::format("{} is too large; correct it", what));
     return value;
   }
 
-  /// A count of lines with at least `least` bytes each.
+  /// Reads a count of lines that take at least `least` bytes each.
   std::size_t count(const char* what, std::size_t least) {
     const auto n = number<std::uint64_t>(what);
     if (n > scanner_.rest().size() / least + 1)
@@ -75,7 +75,7 @@ class Lines {
   TextScanner scanner_;
 };
 
-/// A zone during parsing: points may follow the cells that use them.
+/// A zone that is being parsed. Its points may follow the cells that use them.
 struct Zone {
   cells::CellBlock block;
   bool has_cells = false, has_points = false;
@@ -84,7 +84,7 @@ struct Zone {
 void read_cells(Lines& lines, Zone& zone) {
   if (zone.has_cells) lines.fail("NELEM is given twice in one zone; correct it");
   zone.has_cells = true;
-  constexpr std::size_t least = 9;  // "10 0 1 2 3" is longer; a triangle is "5 0 1 2" and a line end
+  constexpr std::size_t least = 9;  // shortest cell: "10 0 1 2 3" is longer, a triangle is "5 0 1 2" and a line end
   const std::size_t count = lines.count("NELEM", least - 1);
   cells::CellBlock& block = zone.block;
   block.types.reserve(count);
@@ -110,7 +110,7 @@ void read_cells(Lines& lines, Zone& zone) {
 void read_points(Lines& lines, Zone& zone) {
   if (zone.has_points) lines.fail("NPOIN is given twice in one zone; correct it");
   zone.has_points = true;
-  constexpr std::size_t least = 6;  // "0 0 0" and a line end
+  constexpr std::size_t least = 6;  // shortest point: "0 0 0" and a line end
   const std::size_t count = lines.count("NPOIN", least);
   zone.block.positions.reserve(count);
   for (std::size_t v = 0; v < count; ++v) {
@@ -121,7 +121,7 @@ void read_points(Lines& lines, Zone& zone) {
   }
 }
 
-/// Throws unless a zone is complete and its cells use only its points.
+/// Throws unless a zone is complete and its cells use only points of the zone.
 void check(const Zone& zone, const std::string& source) {
   const std::string where = zone.block.name.empty() ? source : fmt::format("{}: {}", source, zone.block.name);
   if (!zone.has_cells || !zone.has_points)
@@ -148,7 +148,7 @@ std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string
       if (const auto dimensions = lines.number<std::uint64_t>("NDIME"); dimensions != 3)
         lines.fail(fmt::format("NDIME is {}: the mesh is not a volume; give one of 3 dimensions", dimensions));
     } else if (key == "IZONE") {
-      // The first zone's name precedes its counts.
+      // The name of the first zone precedes its counts.
       if (zones.back().has_cells || zones.back().has_points) zones.emplace_back();
       zones.back().block.name = fmt::format("zone {}", lines.number<std::uint64_t>("IZONE"));
       has_zones = true;

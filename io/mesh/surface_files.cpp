@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// Number of tets for a surface if no largest volume is given: some 40 across, a second of TetGen's time.
+/// Number of tets for a surface if no largest volume is given. This is some 40 tets across, and takes TetGen a second.
 constexpr double default_tets = 30000;
 
 std::string text_of(const std::filesystem::path& file) { return std::string(WholeFile(file).text()); }
@@ -50,7 +50,7 @@ double box_volume(const cells::Surface& surface) {
   return (high.x - low.x) * (high.y - low.y) * (high.z - low.z);
 }
 
-/// Throws before TetGen starts to create more tets than fit into memory, which it may detect only after an hour.
+/// Throws if TetGen would create more tets than fit into memory. TetGen itself may detect that only after an hour.
 void require_room(double volume, double max_volume, const std::string& source) {
   const double tets = volume / max_volume;
   constexpr double bytes_a_tet = 1024;  // measured (readers/common/limits.cpp)
@@ -103,14 +103,14 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& op
 
   result.format = fmt::format("surface ({}) filled by TetGen", read.words);
   double volume = cells::enclosed_volume(surface);
-  // If facets have mixed orientations, their volumes cancel; only the bounding box is then a measure.
+  // If the orientations of facets are mixed, their volumes cancel, and only the bounding box is a useful estimate.
   if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);
   if (!(volume > 0))
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
   if (max_volume) require_room(volume, largest, source);
-  // Measured on spheres (readers/common/limits.cpp). With fields the surface is filled twice, first without interior
-  // points.
+  // Measured on spheres (readers/common/limits.cpp). A surface with fields is filled twice, the first time without
+  // interior points.
   const auto facets = static_cast<double>(surface.facets.size());
   const double expected = (surface.attributes.empty() ? 2e-4 : 4e-4) * facets + 2e-5 * volume / largest;
   if (options.progress) options.progress({ReadProgress::Stage::filling, 0, expected});
@@ -136,7 +136,7 @@ cells::MeshBlocks read_node_ele(const InputFile& input, const MeshOptions& /*opt
   const std::filesystem::path& file = input.path;
   require_uncompressed(file);
   std::filesystem::path node_file = file, ele_file = file;
-  // The partner's extension in the same case: A.NODE matches A.ELE.
+  // The extension of the other file has the same case: A.NODE matches A.ELE.
   const bool upper = file.extension().string() != system::lower_extension(file);
   node_file.replace_extension(system::lower_extension(file) == ".node" ? file.extension() : upper ? ".NODE" : ".node");
   ele_file.replace_extension(system::lower_extension(file) == ".ele" ? file.extension() : upper ? ".ELE" : ".ele");

@@ -54,10 +54,10 @@ bool has_tecplot_cells(const TecplotZone& zone) {
                                                : zone.type != TecplotZoneType::lines_or_faces;
 }
 
-/// The time of a zone that belongs to a single step.
+/// Returns the time of a zone that belongs to a single step; no value for other zones.
 std::optional<double> time_of(const TecplotZone& zone) { return zone.strand == 0 ? std::nullopt : zone.time; }
 
-/// Solution times of zones with cells, sorted.
+/// Returns the solution times of zones with cells, sorted.
 std::vector<double> times_of(const TecplotHeader& header) {
   std::set<double> times;
   for (const TecplotZone& zone : header.zones)
@@ -73,7 +73,7 @@ scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::siz
   return read;
 }
 
-/// The zones of a step. A strand without a zone at this time uses its last one before it.
+/// Returns the zones of a step. A strand without a zone at this time contributes its last zone before it.
 std::vector<std::size_t> zones_at(const TecplotHeader& header, bool has_steps, double time) {
   std::vector<std::size_t> zones;
   std::map<std::int64_t, double> latest;  // per strand
@@ -104,7 +104,7 @@ class TecplotZones {
     return *read;
   }
 
-  /// The zone that stores the values of a variable of `zone`: itself, or an earlier one.
+  /// Returns the zone that stores the values of a variable of `zone`: the zone itself, or an earlier one.
   [[nodiscard]] std::size_t owner_of(std::size_t zone, std::size_t variable) const {
     for (;;) {
       const auto& shared = header_.zones[zone].shared_from;
@@ -119,7 +119,7 @@ class TecplotZones {
     return zone;
   }
 
-  /// Per node or element. Empty if the zone has no values.
+  /// Returns the values per node or element. Empty if the zone has no values of this variable.
   const std::vector<double>& values(std::size_t zone, std::size_t variable) {
     const TecplotZone& own = header_.zones[zone];
     const std::size_t owner = owner_of(zone, variable);
@@ -148,7 +148,7 @@ void add_tecplot_cell(cells::CellBlock& block, CellType type, std::initializer_l
   block.offsets.push_back(block.connectivity.size());
 }
 
-/// Bricks with repeated nodes are wedges, pyramids and tetrahedra, as defined in the guide.
+/// Adds a brick. Bricks with repeated nodes are wedges, pyramids and tetrahedra, as the guide defines them.
 void add_brick(cells::CellBlock& block, const std::array<std::size_t, 8>& n) {
   const bool is_top_point = n[4] == n[5] && n[5] == n[6] && n[6] == n[7];
   if (n[2] == n[3] && is_top_point)
@@ -173,7 +173,7 @@ void add_ordered(const TecplotZone& zone, cells::CellBlock& block) {
       }
 }
 
-/// The faces of a polyhedron are those that have it on their left or right.
+/// Adds polyhedra. The faces of a polyhedron are those that have it on their left or right.
 void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, cells::CellBlock& block) {
   std::vector<std::vector<std::size_t>> faces_of(zone.elements);
   std::vector<std::size_t> starts{0};

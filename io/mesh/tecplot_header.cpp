@@ -22,7 +22,7 @@ bool is_tecplot_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c =
 
 bool begins_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
 
-/// A key's value: quoted words without quotes, lists without the outer parentheses.
+/// The value of a key. Quoted words are stored without quotes, lists without the outer parentheses.
 struct TecplotValue {
   std::string text;
   bool is_list = false;
@@ -39,7 +39,7 @@ class TecplotWords {
   [[nodiscard]] char here() const { return text_[at_]; }
   void go_to(std::size_t at) { at_ = at; }
 
-  /// Skips blanks, commas and comments; true if a line ended.
+  /// Skips blanks, commas and comments. Returns true if a line ended.
   bool skip_blanks() {
     bool has_ended = false;
     while (!at_end() && (is_tecplot_blank(here()) || here() == '#')) {
@@ -110,7 +110,7 @@ class TecplotWords {
   std::size_t at_ = 0;
 };
 
-/// The numbers of a set, "[1-3,5]" or "5", counted from 0.
+/// Parses the numbers of a set, "[1-3,5]" or "5". The result counts from 0.
 std::vector<std::size_t> numbers_of(std::string_view set, std::size_t count, const std::function<void()>& fail) {
   std::vector<std::size_t> numbers;
   const char *at = set.data(), *const end = at + set.size();
@@ -134,14 +134,15 @@ std::vector<std::size_t> numbers_of(std::string_view set, std::size_t count, con
   return numbers;
 }
 
-/// Entries of a list, separated by commas or blanks outside of brackets: "[4-5]=CELLCENTERED".
+/// Splits a list into entries, which commas or blanks outside of brackets separate. Example of an entry:
+/// "[4-5]=CELLCENTERED".
 std::vector<std::pair<std::string, std::string>> entries_of(std::string_view list) {
   std::vector<std::pair<std::string, std::string>> entries;
   int depth = 0;
   bool has_equals = false, is_open = false;
   for (const char c : list) {
     if (depth == 0 && is_tecplot_blank(c)) {
-      is_open = has_equals && entries.back().second.empty();  // blanks after the equals sign
+      is_open = has_equals && entries.back().second.empty();  // blanks may follow the equals sign
       continue;
     }
     if (c == '=' && depth == 0 && !entries.empty()) {
@@ -172,7 +173,7 @@ class HeaderParser {
       if (key == "ZONE") {
         add_zone(at);
       } else if (key == "VARIABLES" && words_.skip_equals()) {
-        // Concatenated files repeat the record.
+        // Files that were concatenated repeat the record of variables.
         const std::vector<std::string> earlier = std::exchange(header_.variables, {});
         read_variables();
         if (!header_.zones.empty() && header_.variables != earlier)
@@ -201,7 +202,7 @@ class HeaderParser {
     });
   }
 
-  /// The first line at or after `at` that begins another record.
+  /// Returns the position of the first line at or after `at` that begins another record.
   [[nodiscard]] std::size_t next_record(std::size_t at) const {
     while (at < text_.size()) {
       const std::size_t line_end = text_.find('\n', at);
@@ -338,7 +339,7 @@ class HeaderParser {
 
   static bool is_of_cells(const std::string& location) { return upper_case(location).starts_with("CELL"); }
 
-  /// "[4-5]=CELLCENTERED" or a word for each variable.
+  /// Parses "[4-5]=CELLCENTERED", or a list with a word for each variable.
   void set_locations(TecplotZone& zone, const TecplotValue& value) {
     std::size_t next = 0;
     for (const auto& [set, location] : entries_of(value.text)) {
@@ -350,7 +351,7 @@ class HeaderParser {
     }
   }
 
-  /// "[1-3]=2", or a set alone, which refers to the previous zone.
+  /// Parses "[1-3]=2", or a set alone, which refers to the previous zone.
   void set_shares(TecplotZone& zone, const TecplotValue& value) {
     for (const auto& [set, from] : entries_of(value.text)) {
       const std::size_t other = zone_number("VARSHARELIST", {.text = from, .is_list = false, .at = value.at});
@@ -358,7 +359,7 @@ class HeaderParser {
     }
   }
 
-  /// The older list of what is shared with the previous zone: "(1,2,FECONNECT)".
+  /// Parses the older list of arrays that are shared with the previous zone: "(1,2,FECONNECT)".
   void set_duplicates(TecplotZone& zone, const TecplotValue& value) {
     const std::size_t other = zone_number("D", {.text = {}, .is_list = false, .at = value.at});
     for (const auto& [set, from] : entries_of(value.text)) {
@@ -372,7 +373,7 @@ class HeaderParser {
   void finish(TecplotZone& zone) const {
     const bool is_ordered = zone.type == TecplotZoneType::ordered && !packing_.starts_with("FE");
     if (zone.type == TecplotZoneType::ordered && !is_ordered) zone.type = TecplotZoneType::lines_or_faces;
-    // Some writers store the counts of finite elements as I and J.
+    // Some writers store the counts of nodes and elements as I and J.
     if (!is_ordered && zone.nodes == 0 && zone.elements == 0) zone.nodes = zone.i, zone.elements = zone.j;
     const double most = static_cast<double>(text_.size());
     const auto require = [&](double number, const char* what) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view tecplot_blanks = " \t\r\n,";
 
-/// Limit of values per byte of the file, for values stored as repetitions in a few characters.
+/// Largest number of values per byte of the file: a few characters can store many repetitions of a value.
 constexpr double most_values_a_byte = 16;
 
 /// Reads the numbers of a zone sequentially. "3*1.5" is the number 1.5 three times.
@@ -55,21 +55,22 @@ class NumberStream {
     return static_cast<std::size_t>(value);
   }
 
-  /// Refuses a count that exceeds the length of the text.
+  /// Throws for a count that exceeds the length of the text.
   [[noreturn]] void refuse_count(std::size_t count, const char* what) const {
     words_.fail_at(zone_.record_at, fmt::format("the zone has {} {}, more than the file can hold; it is truncated, "
                                                 "export it again",
                                                 count, what));
   }
 
-  /// Count of numbers on the first line that has any.
+  /// Returns how many numbers the first line with numbers has.
   [[nodiscard]] std::size_t on_first_line() const {
     const std::string_view rest = words_.rest();
     return split_words(rest.substr(0, rest.find('\n')), tecplot_blanks).size();
   }
 
  private:
-  /// Also accepts Fortran's notation ("1.5D+00", "+1"). Words such as "1.#QNAN", and numbers out of range, become NaN.
+  /// Parses a number. Also accepts Fortran's notation ("1.5D+00", "+1"). Words such as "1.#QNAN", and numbers out of
+  /// range, become NaN.
   double number(std::string_view word, const char* what) const {
     std::string plain(word.substr(word.starts_with('+') ? 1 : 0));
     std::ranges::replace_if(
@@ -98,7 +99,8 @@ std::size_t nodes_an_element(TecplotZoneType type) {
   return type == TecplotZoneType::bricks ? 8 : type == TecplotZoneType::tetrahedra ? 4 : 0;
 }
 
-/// A zone without a packing keyword is by points if its first line has a number for each variable.
+/// Whether values are packed by points. If the zone has no packing keyword, they are if the first line has a number for
+/// each variable.
 bool is_by_point(const TecplotZone& zone, const NumberStream& numbers, std::size_t variables) {
   if (zone.by_point) return *zone.by_point;
   return variables != zone.nodes && numbers.on_first_line() == variables &&

@@ -19,14 +19,14 @@ class Numbers {
  public:
   Numbers(std::string_view text, const std::string& source) : scanner_(text, source, " \t\r,\v\f", '#') {}
 
-  /// Goes to the next line with content; false at the end.
+  /// Moves to the next line with content. Returns false at the end.
   bool next_line() { return scanner_.next_line(); }
 
   void need_line(const char* what) {
     if (!next_line()) fail(fmt::format("the file ends where {} should be", what));
   }
 
-  /// The next number of this line; no value if there is none.
+  /// Reads the next number of this line; no value if there is none.
   template <class T>
   std::optional<T> maybe() {
     T value{};
@@ -35,7 +35,7 @@ class Numbers {
     if (found == Scanned::other_word)
       fail(fmt::format("'{}' is not {}", scanner_.word().substr(0, 20),
                        std::is_integral_v<T> ? "a whole number" : "a number"));
-    // 1e999 becomes NaN: such a cell is blanked.
+    // 1e999 becomes NaN: a cell with this number is blanked.
     if (found == Scanned::out_of_range && std::is_integral_v<T>) fail("a number is too large");
     return value;
   }
@@ -46,14 +46,14 @@ class Numbers {
     fail(fmt::format("{} is missing", what));
   }
 
-  /// Like need, but continues on the following lines.
+  /// Reads a number like `need`, if necessary from one of the following lines.
   template <class T>
   T need_across_lines(const char* what) {
     if (scanner_.at_end()) need_line(what);
     return need<T>(what);
   }
 
-  /// A count of items that take at least `least` bytes of text each.
+  /// Reads a count of items that take at least `least` bytes of text each.
   std::size_t count(const char* what, std::size_t least) {
     const auto n = need<std::int64_t>(what);
     if (n < 0 || static_cast<std::uint64_t>(n) > scanner_.rest().size() / least + 1)
@@ -74,7 +74,7 @@ struct Nodes {
   std::int64_t first_index = 0;
 };
 
-/// The point list of a .node file, with which .poly and .smesh files begin too.
+/// Parses the point list of a .node file. Files .poly and .smesh begin with the same list.
 Nodes parse_nodes(Numbers& in) {
   Nodes nodes;
   in.need_line("the number of points");
@@ -184,7 +184,7 @@ cells::Surface parse_tetgen_surface(std::string_view text, bool smesh, std::stri
     in.need_line("a facet");
     if (smesh) {
       facet.polygons.push_back(read_polygon(in, nodes));
-      continue;  // a marker may follow
+      continue;  // a marker may follow the attributes
     }
     const std::size_t polygons = in.count("a facet's number of polygons", 2);
     const auto holes = in.maybe<std::int64_t>().value_or(0);

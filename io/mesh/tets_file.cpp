@@ -23,8 +23,8 @@ constexpr std::uint64_t header_bytes = 16, vertex_bytes = 16, tet_bytes = 16;
 std::uint64_t scalars_begin(const TetsHeader& header) { return header_bytes + 12 * header.vertices; }
 std::uint64_t corners_begin(const TetsHeader& header) { return header_bytes + vertex_bytes * header.vertices; }
 
-/// Passes the items [first, last) of an array that begins at a byte to `use`, some at a time: use(index of the first,
-/// items).
+/// Passes the items [first, last) of an array, which begins at a position in the file, to `use`, some at a time:
+/// use(index of the first item, items).
 template <class Item, class Use>
 void each_part(const TetsBytes& file, std::uint64_t begin, std::uint64_t first, std::uint64_t last, const Use& use) {
   constexpr std::uint64_t at_once = (std::uint64_t{1} << 18) / sizeof(Item);
@@ -39,7 +39,7 @@ void each_part(const TetsBytes& file, std::uint64_t begin, std::uint64_t first, 
 using Corners = std::array<std::int32_t, 4>;
 using Point = std::array<float, 3>;
 
-/// Throws if a corner is not a vertex.
+/// Throws if a corner is not the index of a vertex.
 scene::Tet checked_tet(const Corners& corners, std::uint64_t tet, std::uint64_t vertices, const std::string& source) {
   scene::Tet result{};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -124,7 +124,8 @@ TetsRange parse_tets_range(const TetsBytes& file, std::uint64_t first, std::uint
   TetsRange range;
   range.mesh.field_name = "scalar";
   append_tets(file, header, first, last, source, range.mesh.tets);
-  // One bit per vertex of the file, and the number of bits set before each word: the index of its first vertex here.
+  // The bit of a vertex is set if the range uses the vertex. `before` contains, for each word, the number of bits set
+  // before the word: the index in the mesh of the word's first vertex that is used.
   std::vector<std::uint64_t> used((header.vertices + 63) / 64, 0);
   for (const scene::Tet& tet : range.mesh.tets)
     for (const std::uint32_t v : tet) used[v / 64] |= std::uint64_t{1} << v % 64;
@@ -144,7 +145,7 @@ TetsRange parse_tets_range(const TetsBytes& file, std::uint64_t first, std::uint
                                   static_cast<std::uint32_t>(std::countr_zero(bits)));
   range.mesh.positions.reserve(count);
   range.mesh.scalars.reserve(count);
-  // Used vertices are mostly close together, and reading a short gap costs less than another read.
+  // The vertices that are used are mostly close together, and reading a short gap costs less than another read.
   constexpr std::uint32_t longest_gap = 256, longest_run = 1 << 20;
   scene::TetMesh run;
   for (std::size_t k = 0; k < count;) {

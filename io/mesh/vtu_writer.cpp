@@ -19,9 +19,9 @@
 namespace tessera::io {
 namespace {
 
-/// The declaration of one array and its number of values; `fill` supplies those from `first` on as bytes.
+/// The declaration of one array and the number of its values. `fill` supplies bytes of the values from `first` on.
 struct WrittenArray {
-  std::string attributes;  ///< of its <DataArray>
+  std::string attributes;  ///< attributes of the array's <DataArray>
   std::size_t numbers, number_size;
   std::function<void(std::size_t first, std::size_t count, std::byte* to)> fill;
 };
@@ -36,8 +36,9 @@ WrittenArray array_of(std::string attributes, std::size_t numbers, const Of& of)
           }};
 }
 
-/// VTK's compressed form (its "VTK XML Formats" wiki page): number of blocks, their size, the size of a last block that
-/// is not full or 0, the compressed size of each, all uint64; then the blocks, zlib.
+/// Writes VTK's compressed form ("VTK XML Formats" in VTK's wiki): the number of blocks, the size of a block, the size
+/// of the last block if that is not full, otherwise 0, and the compressed size of each block, all as uint64; then the
+/// blocks, compressed by zlib.
 void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
   constexpr std::size_t block_bytes = 1 << 18;
   const std::size_t numbers_a_block = block_bytes / array.number_size,
@@ -69,7 +70,7 @@ void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
 class VtuText {
  public:
   void add(std::string_view text) { text_ += text; }
-  /// `section` contains the arrays from `first` to `last`.
+  /// Adds a section that contains `arrays`, with placeholders for their positions.
   void add_section(const char* opening, const char* closing, std::span<const WrittenArray> arrays) {
     text_ += fmt::format("      <{}>\n", opening);
     for (const WrittenArray& array : arrays) {
@@ -81,7 +82,7 @@ class VtuText {
     text_ += fmt::format("      </{}>\n", closing);
   }
   void write(system::AtomicFile& out) const { out.write(text_); }
-  /// Fills in the position of an array.
+  /// Replaces an array's placeholder by its position.
   void enter(std::size_t array, std::uint64_t offset, system::AtomicFile& out) const {
     const std::uint64_t end = out.position();
     out.seek(places_[array]);

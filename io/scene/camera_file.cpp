@@ -33,7 +33,7 @@ CameraFile view_from_json(const json& object, const std::string& place) {
       numbers.push_back(number.get<double>());
     };
     if (value.is_array()) {
-      // More numbers than any word takes: a long list is refused without copying it.
+      // Stops when there are more numbers than any word takes, so that a long list is refused without copying it.
       for (const json& number : value) {
         take(number);
         if (numbers.size() > 8) break;
@@ -114,7 +114,7 @@ std::string camera_json(const CameraFile& view) {
   if (camera.clipping_range)
     out["clipping_range"] = json::array({camera.clipping_range->near_distance, camera.clipping_range->far_distance});
   if (view.size) out["size"] = json::array({view.size->width, view.size->height});
-  // One word per line, followed by its numbers.
+  // Each line contains one word and its numbers.
   std::string text = "{";
   for (const auto& [key, value] : out.items())
     text += fmt::format("{}\n  \"{}\": {}", text.size() > 1 ? "," : "", key, value.dump());

@@ -17,13 +17,13 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// State of the callbacks. They are called from C, so nothing may be thrown: the first error is stored and the parser
+/// State of the callbacks. They are called from C, so they must not throw: the first error is stored and the parser
 /// stopped.
 struct Pvcc {
   XML_Parser parser = nullptr;
   bool root_seen = false;
-  std::string property;                                                ///< open <Property name="...">
-  std::map<std::string, std::array<std::optional<double>, 3>> values;  ///< of the properties used here
+  std::string property;                                                ///< name of the open <Property>
+  std::map<std::string, std::array<std::optional<double>, 3>> values;  ///< values of the properties that a camera needs
   std::string fault;
 
   void stop(std::string what) {
@@ -82,7 +82,7 @@ void XMLCALL on_end(void* user, const XML_Char* element) {
 }
 
 void XMLCALL on_doctype(void* user, const XML_Char*, const XML_Char*, const XML_Char*, int) {
-  // Entities can expand a small file without bound, and no camera has them.
+  // Entities can expand a small file without bound, and ParaView's cameras do not contain them.
   static_cast<Pvcc*>(user)->stop("has a DOCTYPE; a ParaView camera has none, save it again");
 }
 
@@ -96,7 +96,7 @@ CameraFile parse_pvcc_camera(std::string_view text, const std::string& source) {
   XML_SetUserData(parser.get(), &pvcc);
   XML_SetElementHandler(parser.get(), on_start, on_end);
   XML_SetStartDoctypeDeclHandler(parser.get(), on_doctype);
-  // read_text_file's limit keeps the size within an int.
+  // The limit of read_text_file() ensures that the size fits into an int.
   const XML_Status status = XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1);
   const auto line = XML_GetCurrentLineNumber(parser.get());
   if (!pvcc.fault.empty()) throw scene::bad_input(fmt::format("{}: line {}: {}", source, line, pvcc.fault));

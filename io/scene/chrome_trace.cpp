@@ -19,7 +19,8 @@ namespace {
 using scene::TraceRole;
 using scene::TraceSpan;
 
-/// Frames have tracks of their own, above the threads: they would not nest with the spans of a thread.
+/// Number of the first track of frames. Frames have tracks of their own, because they would not nest with the spans of
+/// a thread.
 constexpr std::uint32_t frame_track = 1'000'000;
 
 const char* word(TraceRole role) {
@@ -27,12 +28,12 @@ const char* word(TraceRole role) {
 }
 
 std::string quoted(const std::string& text) {
-  // `replace`: a name that is not UTF-8 must not invalidate the trace.
+  // With `replace`, a name that is not UTF-8 does not make the trace invalid.
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Text of an array's elements, one per line. A run has many, and the time to write them is part of the run: so numbers
-/// are formatted by hand, in a third of the time that format strings take.
+/// Text of the elements of an array, one per line. A run has many events, and the time to write them is part of the
+/// run. Numbers are therefore formatted without format strings, in a third of the time.
 class EventText {
  public:
   EventText(int rank, std::size_t spans) : rank_(std::to_string(rank)) { text_.reserve(1000 + 140 * spans); }
@@ -97,7 +98,8 @@ class EventText {
   std::string rank_, text_;
 };
 
-/// Frames that overlap, because several are in flight, get parallel tracks: as few as possible for each role.
+/// Adds frames. Frames that overlap, because several are rendered at the same time, get parallel tracks: as few as
+/// possible for each role.
 void add_frames(std::vector<TraceSpan> frames, double offset_us, EventText& events) {
   std::stable_sort(frames.begin(), frames.end(),
                    [](const TraceSpan& a, const TraceSpan& b) { return a.start_us < b.start_us; });

@@ -52,7 +52,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
   bool binary(nlohmann::json::binary_t&) override { return true; }
 
   bool string(std::string& value) override {
-    value = printable(value);  // `tessera timing` prints names
+    value = printable(value);  // `tessera timing` prints these names
     if (here() == Place::event) {
       if (key_ == "name") event_.name = value;
       if (key_ == "cat") event_.category = value;
@@ -161,7 +161,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
                                        source_, key_, value, most));
   }
 
-  /// Returns `value` if it is a number within [least, most], and an integer if `whole`.
+  /// Returns `value`. Fails unless it is a number within [least, most], and an integer if `whole`.
   [[nodiscard]] double checked(const char* name, double value, double least, double most, bool whole) const {
     if (std::isnan(value)) fail(fmt::format("{} is missing or not a number", name));
     if (value >= least && value <= most && !(whole && value != std::floor(value))) return value;

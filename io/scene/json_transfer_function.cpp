@@ -53,7 +53,7 @@ std::vector<scene::Knot> knots_of(const json& list, const std::string& source) {
   return knots;
 }
 
-/// Bisects [t0, t1] until `error` of each part is at most 1; appends the ends of the parts to `at`.
+/// Bisects [t0, t1] until `error` of each part is at most 1. Appends the upper end of each part to `at`.
 template <class Error>
 void cut(double t0, double t1, int depth, const Error& error, std::vector<double>& at) {
   constexpr int most_halvings = 12;
@@ -106,7 +106,7 @@ std::string color_map_json(const scene::TransferFunction& function, double unit_
   // Half of the largest optical depth that an opacity can represent.
   constexpr double most_depth = 6;
   if (function.max_extinction() * unit_distance > most_depth) unit_distance = most_depth / function.max_extinction();
-  // Reading the map back may add the same error again.
+  // Tolerances of the written map. Reading the map back may add the same error again.
   constexpr double color_tolerance = 1e-4, depth_tolerance = 1e-4;
   const auto opacity = [&](double extinction) { return -std::expm1(-extinction * unit_distance); };
   const auto depth = [](double a) { return -std::log1p(-a); };

@@ -28,7 +28,7 @@ class MapReader {
 
   [[nodiscard]] scene::Error fault(const std::string& what) const { return scene::bad_input(source_ + ": " + what); }
 
-  /// The value of a key; null if it is absent or JSON's null.
+  /// Returns the value of a key; null if the key is absent or its value is JSON's null.
   [[nodiscard]] const json* find(const char* key) const {
     const auto found = map_.find(key);
     return found == map_.end() || found->is_null() ? nullptr : &*found;
@@ -41,7 +41,7 @@ class MapReader {
     return value->get<std::string>();
   }
 
-  /// A flat list of numbers, `arity` per point; empty if the key is absent.
+  /// Returns a flat list of numbers, `arity` per point; empty if the key is absent.
   [[nodiscard]] std::vector<double> numbers(const char* key, std::size_t arity) const {
     const json* list = find(key);
     if (list == nullptr) return {};
@@ -66,8 +66,8 @@ class MapReader {
     std::vector<colormaps::ColorPoint> points;
     for (std::size_t i = 0; i + 3 < flat.size(); i += 4) {
       const glm::dvec3 color{flat[i + 1], flat[i + 2], flat[i + 3]};
-      // Rounding slightly below 0 or above 1 is common in exported maps and is clamped; larger values are bytes,
-      // another convention.
+      // Rounding slightly below 0 or above 1 is common in exported maps and is clamped. Much larger values are bytes,
+      // which is another convention.
       if (std::max({color.x, color.y, color.z}) > 2)
         throw fault(fmt::format("RGBPoints: point {} has the colour {} {} {}; components are 0 to 1, not bytes",
                                 i / 4 + 1, color.x, color.y, color.z));
@@ -95,7 +95,7 @@ class MapReader {
   const std::string& source_;
 };
 
-/// VTK sorts points as they are added; points of equal value keep the file's order, which makes steps.
+/// VTK sorts points as they are added. Points of equal value, which form steps, keep the order of the file.
 template <class Point>
 void sort_points(std::vector<Point>& points) {
   std::ranges::stable_sort(points, {}, &Point::value);
@@ -106,8 +106,8 @@ std::array<double, 2> range_of(const std::vector<Point>& points) {
   return {points.front().value, points.back().value};
 }
 
-/// Maps the range `from` of the points to the range `to`. A range of one value gets the colour or opacity of the
-/// middle, because it cannot hold the whole map.
+/// Maps the range `from` of the points to the range `to`. If the target range is a single value, it gets the colour or
+/// opacity of the middle, because it cannot contain the whole map.
 template <class Point>
 void stretch(std::vector<Point>& points, const std::array<double, 2>& from, const std::array<double, 2>& to,
              auto&& at_middle) {
@@ -116,11 +116,11 @@ void stretch(std::vector<Point>& points, const std::array<double, 2>& from, cons
     points.front().value = to[0];
     return;
   }
-  if (from[0] == from[1]) return;  // one value: a constant map
+  if (from[0] == from[1]) return;  // a single value: the map is constant
   for (Point& point : points) point.value = std::lerp(to[0], to[1], (point.value - from[0]) / (from[1] - from[0]));
 }
 
-/// The two points around the middle of [range], and its relative position between them.
+/// The two points around the middle of a range, and the relative position of the middle between them.
 template <class Point>
 auto round_middle(const std::vector<Point>& points) {
   const double middle = 0.5 * (points.front().value + points.back().value);
@@ -133,7 +133,7 @@ auto round_middle(const std::vector<Point>& points) {
   return Place{a, b, a.value < b.value ? (middle - a.value) / (b.value - a.value) : 0};
 }
 
-/// Sets the space; returns a remark for the name, or "".
+/// Sets the colour space. Returns a remark for the name of the map, or "".
 std::string set_color_space(const std::string& name, const MapReader& reader, colormaps::TransferCurves& curves) {
   curves.hue_wraps = false;
   if (const json* wrap = reader.find("HSVWrap"))
@@ -159,7 +159,7 @@ std::string set_color_space(const std::string& name, const MapReader& reader, co
   return "";
 }
 
-/// The length for which opacities are given, and where it comes from.
+/// Returns the unit distance for which opacities are given; `source` gets a description of its origin.
 double unit_distance(const MapReader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
   source = "default";
   double distance = options.default_unit_distance;

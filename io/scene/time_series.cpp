@@ -20,12 +20,12 @@
 namespace tessera::io {
 namespace {
 
-/// A file name that contains a number, as printf's %d or %0Nd.
+/// A pattern of file names that contain a number, like printf's %d or %0Nd.
 struct Pattern {
   std::string before, after;
   int width = 0;
 
-  /// The number for which the pattern gives this name; no value if there is none.
+  /// Returns the number with which the pattern gives this name; no value if there is none.
   [[nodiscard]] std::optional<std::uint64_t> number_in(const std::string& name) const {
     if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
       return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<Pattern> pattern_of(const std::string& name) {
 bool is_file_series(const std::filesystem::path& input) { return system::lower_extension(input) == ".series"; }
 bool is_pvd(const std::filesystem::path& input) { return system::lower_extension(input) == ".pvd"; }
 
-/// Uses the times in numbered VTK files, if all of them have one.
+/// Sets the times to those in the numbered VTK files, if all of the files contain one.
 void set_own_times(std::vector<TimeStep>& steps) {
   std::vector<double> times;
   for (const TimeStep& step : steps) {

@@ -55,7 +55,7 @@ colormaps::LoadedTransferFunction load_transfer_function(const std::string& file
   if (is_json_text(file_or_preset)) {
     const std::string source = "`transfer_function`";
     colormaps::LoadedTransferFunction loaded = parse_json_transfer_function(file_or_preset, source, options);
-    loaded.name.replace(0, source.size(), "JSON");  // for a JSON text, which has no file name
+    loaded.name.replace(0, source.size(), "JSON");  // a JSON text does not have a file name
     return loaded;
   }
   if (colormaps::is_preset(file_or_preset)) return colormaps::preset(file_or_preset, options);

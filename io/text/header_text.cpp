@@ -14,7 +14,7 @@
 namespace tessera::io {
 namespace {
 
-/// Words separated by blanks, commas and brackets.
+/// Splits a text into words, which blanks, commas and brackets separate.
 std::vector<std::string_view> header_words_of(std::string_view text) { return split_words(text, " \t\r\n,()"); }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::filesystem::path header_path(std::string_view text, const std::filesystem::
   std::error_code failed;
   std::filesystem::path path = file.parent_path() / text;
   if (is_inflated(path)) require_uncompressed(file);
-  // An empty name would be the directory itself.
+  // An empty name would denote the directory itself.
   if (!is_name || !std::filesystem::exists(path, failed) || std::filesystem::is_directory(path, failed))
     throw scene::bad_input(fmt::format("{}: {} is {}, and there is no such file; put the file it names there",
                                        file.string(), what, quote(text)));

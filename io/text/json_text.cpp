@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The part of nlohmann's message that states the error, on one line and without foreign bytes:
+/// Returns the part of nlohmann's message that states the error, on one line and without bytes of the text:
 /// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ... - WHAT; last read: '...'"
 std::string reason(std::string message) {
   if (const auto last = message.find("; last read"); last != std::string::npos) message.resize(last);
@@ -33,8 +33,8 @@ std::string place(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - begin_of_line + 1);
 }
 
-/// Builds the values of a text in linear time. The library's own parser with a callback takes quadratic time: it walks
-/// through the whole array or object at the end of each member.
+/// Builds the values of a text in linear time. The library's own parser with a callback takes quadratic time, because
+/// it visits all elements of an array or object at the end of each one.
 class Builder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(std::string_view text, const std::string& source, std::size_t most_values)
@@ -48,7 +48,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t& /*text*/) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t& /*value*/) override { return false; }  // not part of JSON texts
+  bool binary(binary_t& /*value*/) override { return false; }  // JSON texts do not contain binary values
   bool start_object(std::size_t /*elements*/) override { return open(json::object()); }
   bool start_array(std::size_t /*elements*/) override { return open(json::array()); }
   bool end_object() override { return close(); }
@@ -85,7 +85,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
     if (open_.size() == deepest)
       throw scene::bad_input(
           fmt::format("{}: nested more than {} levels deep; this is not one of Tessera's files", source_, deepest));
-    open_.push_back(&place(std::move(value)));  // its address is stable until it is closed
+    open_.push_back(&place(std::move(value)));  // the address of a value is stable until the value is closed
     return true;
   }
   bool close() {
@@ -98,7 +98,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   std::size_t most_values_, values_ = 0;
   json root_;
   std::vector<json*> open_;  ///< arrays and objects, outermost first
-  json* member_ = nullptr;   ///< in the innermost object: the member whose value comes next
+  json* member_ = nullptr;   ///< in the innermost object: the member whose value is parsed next
 };
 
 }  // namespace

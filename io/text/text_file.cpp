@@ -28,7 +28,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
   system::note_read(file);
-  // Read in pieces, not by size: a pipe has no size.
+  // Reads in pieces, without asking for the size: a pipe has no size.
   std::string text;
   std::vector<char> piece(1u << 16);
   while (stream) {
@@ -39,7 +39,7 @@ std::string read_text_file(const std::filesystem::path& file) {
           fmt::format("{}: is larger than {} MiB, too large for a text of this kind; check that it is the right file",
                       file.string(), largest_file >> 20));
   }
-  // System files without a size refuse to be read; for others reading is an I/O error.
+  // Some system files without a size refuse to be read; for any other file, a failed read is an I/O error.
   if (stream.bad() && std::filesystem::file_size(file, error) == 0)
     throw scene::bad_input(file.string() + ": it cannot be read as text; check that it is the right file");
   if (stream.bad())

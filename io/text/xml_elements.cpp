@@ -43,7 +43,7 @@ void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attribu
 
 void XMLCALL on_end(void* user, const XML_Char* /*name*/) {
   Walk& walk = *static_cast<Walk*>(user);
-  // After it is stopped at the start event of an empty element, expat still sends the end event.
+  // If parsing is stopped at the start event of an empty element, expat still sends the end event.
   if (!walk.fault) walk.parents.pop_back();
 }
 
@@ -81,7 +81,7 @@ void each_xml_element(std::string_view text, const std::string& source,
   XML_SetUserData(parser.get(), &walk);
   XML_SetElementHandler(parser.get(), on_start, on_end);
   if (visit_text) XML_SetCharacterDataHandler(parser.get(), on_text);
-  constexpr std::size_t chunk = 1 << 20;  // expat counts in int
+  constexpr std::size_t chunk = 1 << 20;  // expat counts bytes in int
   for (std::size_t at = 0;; at += chunk) {
     const std::string_view part = text.substr(std::min(at, text.size()), chunk);
     const bool last = at + chunk >= text.size();

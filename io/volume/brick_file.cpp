@@ -29,7 +29,7 @@ using BrickJson = nlohmann::json;
 using scene::GridIndex;
 using scene::SampleBox;
 
-constexpr std::uint64_t longest_brick_header = 1 << 28;  // it contains rectilinear coordinates
+constexpr std::uint64_t longest_brick_header = 1 << 28;  // the header contains the coordinates of rectilinear grids
 
 class BrickSource final : public scene::SampleSource {
  public:
@@ -80,8 +80,8 @@ class BrickSource final : public scene::SampleSource {
     });
   }
 
-  /// Reads the bytes from the first to the last requested sample of each slice, or of all slices if that is hardly
-  /// more.
+  /// Reads the bytes from the first to the last requested sample of each slice; reads all slices at once if that needs
+  /// hardly more bytes.
   void read_part(const GridIndex& b, const SampleBox& block, const SampleBox& part, const SampleBox& box,
                  const scene::SampleLayout& layout, std::vector<std::byte>& scratch, std::byte* destination) const {
     const std::size_t size = scene::size_of(grid().type), to_size = scene::size_of(layout.type);
@@ -119,7 +119,8 @@ class BrickSource final : public scene::SampleSource {
   mutable std::atomic<std::uint64_t> bytes_read_ = 0;
 };
 
-/// An integer stored as one, not 1e38, which no integer type holds. Throws BrickJson's exception for anything else.
+/// Returns an integer that is stored as an integer, not as 1e38, which does not fit into any integer type. Throws
+/// BrickJson's exception for anything else.
 std::int64_t whole_number(const BrickJson& json) {
   return json.is_number_integer() ? json.get<std::int64_t>() : json.get_ref<const std::int64_t&>();
 }
@@ -199,7 +200,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& opt
   result.fields.push_back(field);
   result.body_axes = header.axes;
   result.tags = std::move(header.tags);
-  cells::choose_field(options.field, result.fields, file.string());  // refuses any other field
+  cells::choose_field(options.field, result.fields, file.string());  // throws if another field is requested
   result.in_memory = is_inflated(file);
   result.source = std::make_unique<BrickSource>(std::move(header.grid), file, name, header.side, header.range,
                                                 std::move(ranges), before + length + count * sizeof(BlockRange));
@@ -214,7 +215,8 @@ VolumeFile open_brick_file(const InputFile& file, const VolumeOptions& options) 
 
 namespace {
 
-/// Writes a brick file from a source, which it reads once: one row of blocks at a time, blocks on several threads.
+/// Writes a brick file from a source. Reads the source once, one row of blocks at a time, and processes blocks on
+/// several threads.
 class BrickWriter {
  public:
   BrickWriter(const scene::SampleSource& source, int side, BrickWords words = {})

@@ -89,7 +89,7 @@ std::int64_t Blocks::first_sample(const GridIndex& b) const {
 
 BrickLayout::BrickLayout(const scene::Grid& grid, int side, BrickWords words)
     : grid_(grid), side_(side), words_(std::move(words)), blocks_(grid.geometry.samples(), side) {
-  // Space for the longest possible ranges, which are known last.
+  // The header includes space for the longest possible ranges, because the ranges are known last.
   header_bytes_ = brick_header_of(grid_, side, words_, {}).size() + 3 * 32;
 }
 

@@ -21,7 +21,7 @@ FileSource::FileSource(scene::Grid grid, const std::filesystem::path& file, std:
 
 void FileSource::read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout,
                               std::byte* destination) const {
-  // Reading the gap between short rows costs less than another call; longer reads gain nothing.
+  // Reading the gap between short rows costs less than another call; reads longer than `most_at_once` are not faster.
   constexpr std::int64_t longest_gap = 2048, most_at_once = 1 << 17;
   const scene::GridIndex n = geometry().samples();
   const auto to_size = static_cast<std::int64_t>(scene::size_of(layout.type));
@@ -30,7 +30,7 @@ void FileSource::read_samples(const scene::SampleBox& box, const scene::SampleLa
   const std::int64_t together =
       stride - row > longest_gap ? 1 : std::clamp<std::int64_t>((most_at_once - row) / stride + 1, 1, box.extent(1));
   const bool as_stored = choice_.components == 1 && !swapped_ && layout.type == choice_.type;
-  // On the stack: on the heap it would fragment the memory of the bricks that are read.
+  // Stored on the stack, because on the heap it would fragment the memory of bricks.
   std::array<std::byte, most_at_once> few;
   std::vector<std::byte> many;
   for (std::int64_t k = 0; k < box.extent(2); ++k)

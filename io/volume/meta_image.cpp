@@ -16,7 +16,7 @@
 namespace tessera::io {
 namespace {
 
-// MET_LONG has four bytes or eight, depending on the machine that wrote it.
+// MET_LONG has four or eight bytes, depending on the machine that wrote the file.
 constexpr scene::NumberTypeNames element_types[] = {
     {scene::NumberType::int8, "MET_CHAR"},       {scene::NumberType::uint8, "MET_UCHAR"},
     {scene::NumberType::int16, "MET_SHORT"},     {scene::NumberType::uint16, "MET_USHORT"},

@@ -26,9 +26,9 @@ std::vector<std::byte> first_bytes(std::string_view beginning) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Up to 540 bytes, inflated if the file is gzip.
+/// Reads the header, up to 540 bytes, inflated if the file is gzip.
 std::vector<std::byte> header_bytes(const std::filesystem::path& file) {
-  constexpr std::size_t enough = 1 << 16;  // also if gzip: it has a file name and deflate expands little
+  constexpr std::size_t enough = 1 << 16;  // sufficient even for gzip, which adds a file name and expands little
   const std::string beginning = read_beginning(file, enough);
   return system::looks_like_gzip(beginning)
              ? system::inflate_beginning(std::as_bytes(std::span(beginning)), header_size_2)
@@ -54,7 +54,8 @@ class NiftiHeader {
 
   /// 0: not NIfTI.
   [[nodiscard]] int version() const { return version_; }
-  /// Analyze 7.5: the same size, dimensions, types and spacing, but no magic word.
+  /// Whether the header is that of Analyze 7.5, which has the same size, dimensions, types and spacing, but no magic
+  /// word.
   [[nodiscard]] bool is_analyze() {
     if (version_ != 0 || bytes_.size() < header_size_1) return false;
     for (const bool swapped : {false, true}) {
@@ -81,12 +82,12 @@ class NiftiHeader {
   [[nodiscard]] double intercept() const { return real(116, 184); }
   [[nodiscard]] int qform_code() const { return version_ == 1 ? get<std::int16_t>(252) : get<std::int32_t>(344); }
   [[nodiscard]] int sform_code() const { return version_ == 1 ? get<std::int16_t>(254) : get<std::int32_t>(348); }
-  /// quatern_b, c, d, qoffset_x, y, z.
+  /// Number k of quatern_b, c, d, qoffset_x, y, z.
   [[nodiscard]] double quaternion(std::size_t k) const { return real(256 + 4 * k, 352 + 8 * k); }
   [[nodiscard]] int intent() const { return version_ == 1 ? get<std::int16_t>(68) : get<std::int32_t>(504); }
-  /// xyzt_units without the time bits: 1 m, 2 mm, 3 um; 0: not stated.
+  /// xyzt_units without the bits for time: 1 is m, 2 mm, 3 um, and 0 not stated.
   [[nodiscard]] int length_unit() const { return (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 7; }
-  /// Time unit of xyzt_units, in seconds; 0 if it is not a time or not stated.
+  /// The time unit in xyzt_units, in seconds; 0 if it is not stated or not a unit of time.
   [[nodiscard]] double time_unit() const {
     const int code = (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 0x38;
     return code == 8 ? 1 : code == 16 ? 1e-3 : code == 24 ? 1e-6 : 0;
@@ -126,11 +127,11 @@ constexpr std::array nifti_types = {
     NiftiType{768, scene::NumberType::uint32, 1}, NiftiType{2304, scene::NumberType::uint8, 4},
     NiftiType{1024, scene::NumberType::int64, 1}, NiftiType{1280, scene::NumberType::uint64, 1}};
 
-/// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0, the third axis mirrored if qfac is -1.
+/// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0. The third axis is mirrored if qfac is -1.
 std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm::dvec3& spacing) {
   double b = header.quaternion(0), c = header.quaternion(1), d = header.quaternion(2);
   double a = 1 - (b * b + c * c + d * d);
-  if (a < 1e-7) {  // a half turn: rounding may make a^2 slightly negative
+  if (a < 1e-7) {  // a half turn: rounding may have made a^2 slightly negative
     const double length = std::sqrt(b * b + c * c + d * d);
     b /= length, c /= length, d /= length, a = 0;
   } else {
@@ -142,14 +143,15 @@ std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm:
           glm::dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b) * spacing.z * mirror};
 }
 
-/// Anatomical axes apply if coordinates are those of a scanner or an atlas (codes 1, 3, 4) or in millimetres: libraries
-/// write the other codes for any data. Otherwise the values must look like CT.
+/// Sets anatomical axes if the coordinates are those of a scanner or an atlas (codes 1, 3, 4), or in millimetres.
+/// Libraries write the other codes for data of any kind; in that case the axes apply only if the values look like those
+/// of CT.
 void set_nifti_axes(const NiftiHeader& header, int code, StoredVolume& volume) {
   const bool is_body = code == 1 || code == 3 || code == 4 || header.length_unit() == 2;
   (is_body ? volume.body_axes : volume.axes_if_ct) = BodyAxes::ras;
 }
 
-/// The meaning of the values, and the unit of length.
+/// Sets tags for the meaning of the values and the unit of length.
 void set_nifti_tags(const NiftiHeader& header, StoredVolume& volume) {
   constexpr int label_intent = 1002, neuro_name_intent = 1005;  // nifti1.h
   volume.tags.labels = header.intent() == label_intent || header.intent() == neuro_name_intent;
@@ -172,7 +174,7 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
     volume.notes.emplace_back("placed by its sform");
   } else if (header.qform_code() > 0) {
     scene::set_axes(g, quaternion_steps(header, spacing));
-    g.spacing = spacing;  // exact, without the quaternion's rounding
+    g.spacing = spacing;  // the given spacing, which has no rounding errors of the quaternion
     g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
     set_nifti_axes(header, header.qform_code(), volume);
     volume.notes.emplace_back("placed by its qform");
@@ -184,7 +186,7 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
       throw damaged(file, fmt::format("the spacing along {} is {}", "xyz"[axis], g.spacing[axis]));
 }
 
-/// Sizes, steps and components.
+/// Sets sizes, steps and components.
 void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   const std::int64_t dimensions = header.dim(0);
   if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header states {} dimensions", dimensions));
@@ -199,7 +201,7 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
     volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
   if (dimensions >= 4) volume.steps = static_cast<std::uint64_t>(header.dim(4));
   if (dimensions < 5 || header.dim(5) == 1) return;
-  // Components of a sample are further apart than its steps.
+  // In the file, the components of a sample are further apart than its steps.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
     throw scene::bad_input(fmt::format(
         "{}: dimension 5 holds {} components and {} steps; write only one of the two, with at most 64 components",
@@ -219,7 +221,7 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
   volume.swapped = header.swapped();
 }
 
-/// The samples' file for a separate header: x.img for x.hdr, packed or not.
+/// Returns the file of samples for a separate header: x.img for x.hdr, compressed or not.
 std::filesystem::path image_of_header(const std::filesystem::path& header) {
   std::filesystem::path stem = header;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();

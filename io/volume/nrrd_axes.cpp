@@ -19,14 +19,15 @@
 namespace tessera::io {
 namespace {
 
-/// Words separated by blanks; keeps quotes.
+/// Splits a text into words, which blanks separate; keeps quotes.
 std::vector<std::string> nrrd_words(std::string_view text) {
   std::vector<std::string> words;
   for (const std::string_view word : split_words(text)) words.push_back(lower_case(word));
   return words;
 }
 
-/// One vector per axis, of three or four numbers; "none" and (nan, nan, nan) have no value: `(1,0,0) none (0,0.5,0)`.
+/// Parses one vector per axis, of three or four numbers, for example `(1,0,0) none (0,0.5,0)`. "none" and (nan, nan,
+/// nan) give no value.
 std::vector<std::optional<glm::dvec4>> space_vectors_of(std::string_view text, const std::filesystem::path& file) {
   std::vector<std::optional<glm::dvec4>> vectors;
   text = trimmed(text);
@@ -64,7 +65,7 @@ using Uses = std::vector<NrrdAxes::Use>;
 
 bool has_three(const Uses& uses) { return std::ranges::count(uses, NrrdAxes::Use::space) == 3; }
 
-/// The uses of axes if exactly three have a direction in space; else no value.
+/// Returns the uses of the axes if exactly three have a direction in space; otherwise no value.
 std::optional<Uses> uses_by_directions(const NrrdFields& fields, std::size_t axes, const std::filesystem::path& file) {
   const auto* directions = fields.find("spacedirections");
   if (directions == nullptr) return std::nullopt;
@@ -79,7 +80,7 @@ std::optional<Uses> uses_by_directions(const NrrdFields& fields, std::size_t axe
   return has_three(uses) ? std::optional(uses) : std::nullopt;
 }
 
-/// The use that a word of `kinds` names; `nothing`: unknown.
+/// Returns the use that a word of `kinds` names; `nothing` for an unknown word.
 NrrdAxes::Use use_of_kind(const std::string& kind) {
   if (kind == "domain" || kind == "space") return NrrdAxes::Use::space;
   if (kind == "time" || kind == "list" || kind == "point") return NrrdAxes::Use::steps;
@@ -87,7 +88,7 @@ NrrdAxes::Use use_of_kind(const std::string& kind) {
   return NrrdAxes::Use::components;
 }
 
-/// Axes before the spatial ones are components, those after them time steps.
+/// Sets the uses that are not determined: axes before the spatial ones are components, those after them time steps.
 void fill_unknown_uses(Uses& uses, const std::vector<std::int64_t>& sizes, const Uses& by_kinds) {
   const auto first = std::ranges::find(uses, NrrdAxes::Use::space) - uses.begin();
   for (std::size_t a = 0; a < uses.size(); ++a) {
@@ -101,8 +102,8 @@ void fill_unknown_uses(Uses& uses, const std::vector<std::int64_t>& sizes, const
   }
 }
 
-/// For the letters or words of anatomical axes: the direction of each axis of the file in right-anterior-superior. No
-/// value for other texts.
+/// Given the letters or words of anatomical axes, returns the direction of each axis of the file in
+/// right-anterior-superior. No value for other texts.
 std::optional<glm::dmat3> to_ras(std::string_view space) {
   struct BodyWord {
     std::string_view word;
@@ -153,7 +154,8 @@ NrrdSpace space_of(const std::string& field) {
           .note = fmt::format("its space, {}, is turned to right-anterior-superior", field)};
 }
 
-/// Positions along one axis, from the per-axis fields: half a step further in if samples are cell centers.
+/// Positions along one axis, from the fields that have a value per axis. If samples are cell centers, the first is half
+/// a step further inside.
 struct AxisPlaces {
   double spacing = 1, first = 0;
 };
@@ -186,12 +188,13 @@ AxisPlaces axis_places(const NrrdFields& fields, std::size_t axis, const std::ve
   return places;
 }
 
-/// The numbers of `space origin`, including time if there are four.
+/// Parses the numbers of `space origin`. A fourth number is a time.
 std::vector<double> space_origin_of(const std::string& field, const std::filesystem::path& file) {
   return header_numbers(field, std::ranges::count(field, ',') == 3 ? 4 : 3, file, "space origin");
 }
 
-/// For an axis whose direction in a four-dimensional space is along the fourth dimension only.
+/// Returns the times of an axis whose direction in a four-dimensional space is along the fourth dimension only; no
+/// value for other axes.
 std::optional<AxisPlaces> places_in_time(const NrrdFields& fields, std::size_t axis,
                                          const std::filesystem::path& file) {
   const auto *directions = fields.find("spacedirections"), *place = fields.find("spaceorigin");
@@ -216,7 +219,7 @@ NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& fi
     const std::string_view line = trimmed(text.substr(fields.end, stop - fields.end));
     fields.end = std::min(stop + 1, text.size());
     if (std::exchange(first, false)) continue;  // NRRD000x
-    if (line.empty()) return fields;            // the header's end
+    if (line.empty()) return fields;            // an empty line ends the header
     const std::size_t colon = line.find(':');
     if (line.front() == '#') continue;
     if (colon == std::string_view::npos)

@@ -40,7 +40,7 @@ const std::string& required_field(const NrrdFields& fields, const char* name, co
   return *value;
 }
 
-/// Position after skipping `lines` lines from `offset`.
+/// Returns the position after skipping `lines` lines from `offset`.
 std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
   if (lines == 0) return offset;
   const std::uint64_t size = require_file(payload);
@@ -57,7 +57,7 @@ std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t of
   throw damaged(payload, "it has fewer lines than are to be skipped");
 }
 
-/// Components and time steps.
+/// Sets components and time steps.
 void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes, const std::filesystem::path& file,
                     StoredVolume& volume) {
   bool has_steps = false, has_components = false, is_first_steps = false;
@@ -91,7 +91,7 @@ void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes
         file.string()));
 }
 
-/// Metadata from the fields and the keys that other programs and write_volume() use.
+/// Sets tags from the fields and keys that other programs and write_volume() use.
 void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
   const auto first_quoted = [](std::string_view text) {
     const std::size_t open = text.find('"');
@@ -105,11 +105,11 @@ void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
     return found == fields.keys.end() ? std::string() : found->second;
   };
   volume.tags.modality = key("modality");
-  // 3D Slicer's segmentations list their labels by number.
+  // 3D Slicer's segmentations have a numbered list of labels.
   volume.tags.labels = key("intent") == "label" || fields.keys.contains("Segment0_LabelValue");
 }
 
-/// Reads more than the file's first bytes only if the header is longer or lists files.
+/// Reads the header. Reads more than the file's first bytes only if the header is longer or lists files.
 std::string header_of(const InputFile& file) {
   constexpr std::size_t longest_nrrd_header = 1 << 20;
   const std::string& text = file.beginning;

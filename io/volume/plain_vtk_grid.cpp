@@ -29,13 +29,14 @@ namespace {
 
 constexpr std::size_t longest_beginning = 1 << 20, longest_number = 32;
 
-/// The text of a file: its beginning or, if the samples are within the text, the parts before and after them.
+/// The XML text of a file: its beginning or, if the samples are within the text, the parts before and after the
+/// samples.
 struct GridWords {
   std::string text;
-  std::size_t cut = std::string::npos;  ///< where samples are omitted
+  std::size_t cut = std::string::npos;  ///< position in the text where samples are omitted
   std::uint64_t left_out = 0;           ///< bytes
 
-  /// Position in the file.
+  /// Position in the file of a position in the text.
   [[nodiscard]] std::uint64_t place(std::size_t at) const { return at < cut ? at : at + left_out; }
 };
 
@@ -52,7 +53,7 @@ struct GridElements {
   std::vector<ElementFound> axes;
   int pieces = 0, arrays = 0, coordinates = 0;
   bool of_cells = false, active = false;
-  bool whole = false;  ///< only appended arrays follow
+  bool whole = false;  ///< only appended arrays follow the text
 };
 
 struct WordsEnd {};
@@ -62,7 +63,7 @@ std::string word(const Attributes& attributes, const std::string& name, const st
   return found == attributes.end() ? otherwise : found->second;
 }
 
-/// Elements up to the appended arrays or the end of the text.
+/// Parses the elements up to the appended arrays or the end of the text.
 GridElements elements_of(std::string_view words, const std::string& source) {
   GridElements found;
   std::string scalars;
@@ -89,7 +90,7 @@ GridElements elements_of(std::string_view words, const std::string& source) {
     found.whole = true;
   } catch (const WordsEnd&) {
     found.whole = true;
-  } catch (const scene::Error&) {  // the XML continues after this text; the elements found must be sufficient
+  } catch (const scene::Error&) {  // the XML continues after this text; the elements parsed so far must be sufficient
   }
   return found;
 }
@@ -103,14 +104,14 @@ bool read_numbers(const std::string& text, std::array<T, n>& numbers) {
   return (in >> std::ws).eof();
 }
 
-/// False if anything is unusual.
+/// Returns false if the extent has any unusual feature.
 bool set_extent(const GridElements& found, ForeignPart& part, scene::GridGeometry& g) {
   std::array<std::int64_t, 6> piece{};
   if (!read_numbers(word(found.grid, "WholeExtent"), part.extent) ||
       !read_numbers(word(found.piece, "Extent"), piece) || piece != part.extent)
     return false;
   for (std::size_t a = 0; a < 3; ++a) {
-    constexpr std::int64_t most = 1 << 16;  // so that bytes can be counted
+    constexpr std::int64_t most = 1 << 16;  // limit, so that byte counts do not overflow
     const std::int64_t low = part.extent[2 * a], high = part.extent[2 * a + 1];
     if (low < -most || high > most || high <= low) return false;
     g.points[a] = high - low + 1;
@@ -136,7 +137,7 @@ VtkArrayPlace packing_of(const GridElements& found) {
           .number_bytes = word(found.file, "header_type") == "UInt64" ? 8u : 4u};
 }
 
-/// Where a binary array begins; no value if it is outside the text.
+/// Returns where a binary array begins; no value if it is outside the text.
 std::optional<VtkArrayPlace> place_of(const ElementFound& array, const GridElements& found, const GridWords& words) {
   VtkArrayPlace place = packing_of(found);
   const std::string format = word(array.attributes, "format");
@@ -157,7 +158,7 @@ std::optional<VtkArrayPlace> place_of(const ElementFound& array, const GridEleme
   return place;
 }
 
-/// Parses exactly as many numbers as expected, each rounded to its type; false for any other text.
+/// Parses exactly as many numbers as `numbers` has, each rounded to its type. Returns false for any other text.
 bool read_text(std::string_view text, NumberType type, std::span<double> numbers) {
   return with_number_type(type, [&](auto value) {
     const std::string unnamed;
@@ -170,7 +171,7 @@ bool read_text(std::string_view text, NumberType type, std::span<double> numbers
   });
 }
 
-/// No value if anything is unusual.
+/// Reads the coordinates of an axis. No value if the array has any unusual feature.
 std::optional<AxisCoordinates> axis_of(const system::PositionalFile& file, const ElementFound& array,
                                        const GridElements& found, const GridWords& words, std::int64_t points) {
   const auto type = vtk_xml_number_type(word(array.attributes, "type"));
@@ -202,7 +203,7 @@ bool set_axes_of(const system::PositionalFile& file, const GridElements& found, 
   return true;
 }
 
-/// Omits the samples, which end at `end`; false if the text after them is too long.
+/// Omits the samples, which end at `end`, from the text. Returns false if the text after them is too long.
 bool leave_out(const system::PositionalFile& file, std::size_t samples, std::uint64_t end, const scene::GridGeometry& g,
                GridWords& words) {
   std::uint64_t most = longest_beginning;

@@ -62,7 +62,7 @@ StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& 
   volume.number = *type;
   volume.swapped = scene::is_swapped(options.big_endian);
   volume.offset = options.skip;
-  volume.exact_size = true;  // otherwise wrong dimensions would give a skewed image without an error
+  volume.exact_size = true;  // without this check, wrong dimensions would give a skewed image instead of an error
   return volume;
 }
 

@@ -16,7 +16,8 @@
 namespace tessera::io {
 namespace {
 
-/// Bytes of one step. Checks that neither this nor the size of all steps overflows for a damaged header.
+/// Returns the number of bytes of one step. Checks that neither this number nor the size of all steps overflows for a
+/// damaged header.
 std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source) {
   std::uint64_t needed = scene::size_of(volume.number) * static_cast<std::uint64_t>(volume.components);
   std::uint64_t all = 0;
@@ -39,7 +40,7 @@ struct Wanted {
   std::uint64_t first, count, all;
 };
 
-/// Error for a file that is too small.
+/// Returns the error for a file that is too small.
 scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint64_t has, const std::string& source) {
   const scene::GridIndex n = volume.grid.geometry.samples();
   const std::string after = volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "";
@@ -59,7 +60,7 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
                                       after, remedy));
 }
 
-/// The range to unpack of a compressed volume's file.
+/// Returns the range to unpack of a compressed volume's file.
 system::InflatedRange range_of(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted,
                                std::uint64_t size) {
   const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
@@ -68,7 +69,7 @@ system::InflatedRange range_of(const StoredVolume& volume, const std::filesystem
   return {skip, before + wanted.first, wanted.count};
 }
 
-/// The bytes of one step; with interleaved steps, of all steps.
+/// Returns the range of one step's bytes; with interleaved steps, that of all steps.
 Wanted wanted_of(const StoredVolume& volume, std::size_t step, const std::string& source) {
   const std::uint64_t needed = bytes_needed(volume, source), all = needed * volume.steps;
   return volume.interleaved_steps ? Wanted{0, all, all} : Wanted{step * needed, needed, all};
@@ -86,7 +87,7 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
   if (volume.compressed) {
     std::vector<std::byte> bytes;
     system::inflate_parts(file, range_of(volume, file, wanted, size), source, [&](std::span<const std::byte> part) {
-      if (bytes.empty()) bytes.reserve(wanted.count);  // the compressed size has been checked against it
+      if (bytes.empty()) bytes.reserve(wanted.count);  // the count has been checked against the compressed size
       bytes.insert(bytes.end(), part.begin(), part.end());
     });
     return kept(std::move(bytes), 0);
@@ -130,7 +131,8 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
     const std::uint64_t first = std::max(wanted.first, k * part) - k * part;
     const std::uint64_t last = std::min(wanted.first + wanted.count, (k + 1) * part) - k * part;
     VolumePayload slice = payload_of_file(volume, volume.slices[k], {first, last - first, part});
-    // Reserves everything only if the files are known to contain it; text and gzip are checked while they are read.
+    // Reserves all memory only if the files are known to contain the samples; text and gzip files are checked while
+    // they are read.
     if (k * part <= wanted.first && slice.in_file) bytes->reserve(std::min(wanted.count, files * part));
     slice = in_memory(std::move(slice), volume.slices[k].string());
     bytes->insert(bytes->end(), slice.bytes.begin(), slice.bytes.end());

@@ -35,11 +35,11 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
     while (at != end && sample_blanks.find(*at) != std::string_view::npos) ++at;
     if (at == end) throw too_few(source, n, count, "numbers");
     if (*at == '+') ++at;
-    // Parsed as double, so that integers may be written as 12.0; exact for 32 bits.
+    // Parsed as double, because integers may be written as 12.0. A double represents integers of 32 bits exactly.
     double value = 0;
     const auto [stop, error] = std::from_chars(at, end, value);
     bool good = error == std::errc() && (stop == end || sample_blanks.find(*stop) != std::string_view::npos);
-    if constexpr (std::is_same_v<T, float>)  // beyond a float's range it becomes infinite, and so blank
+    if constexpr (std::is_same_v<T, float>)  // numbers beyond a float's range become infinite, and therefore blank
       if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
         value = std::copysign(std::numeric_limits<double>::infinity(), value);
     if constexpr (std::is_integral_v<T>)

@@ -17,7 +17,7 @@ namespace {
 using scene::GridIndex;
 using scene::SampleBox;
 
-/// Collects whole slices, some at a time, from tuples that arrive in parts of any size.
+/// Collects whole slices, some at a time, from tuples that arrive in pieces of any size.
 class Slabs {
  public:
   explicit Slabs(const StreamedSamples& samples) : streamed_(samples), n_(samples.grid.geometry.samples()) {
@@ -25,8 +25,8 @@ class Slabs {
     as_stored_ = samples.choice.components == 1 && !samples.swapped && samples.choice.type == samples.grid.type;
   }
 
-  /// Calls `use` with samples in the grid's storage format of slices [first, first + count): at most `most_slices`,
-  /// never across a multiple of that.
+  /// Calls `use` with the samples of slices [first, first + count) in the grid's storage format. `count` is at most
+  /// `most_slices`, and the slices never cross a multiple of `most_slices`.
   template <class Use>
   void each(std::int64_t most_slices, const Use& use) {
     constexpr std::size_t most_bytes = 8 << 20;
@@ -70,7 +70,7 @@ class Slabs {
   bool as_stored_ = false;
 };
 
-/// The part of a block in slices [first, first + count), contiguous.
+/// Returns the part of a block in slices [first, first + count), contiguous.
 std::vector<std::byte> part_of_block(const SampleBox& box, const GridIndex& n, std::size_t size, std::int64_t count,
                                      std::span<const std::byte> slab) {
   const std::size_t row = static_cast<std::size_t>(box.extent(0)) * size;

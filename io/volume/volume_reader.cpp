@@ -20,7 +20,7 @@
 namespace tessera::io {
 namespace {
 
-/// The name that decides if the first bytes do not: x.raw for x.raw.gz.
+/// Returns the name that determines the format if the first bytes do not: x.raw for x.raw.gz.
 std::filesystem::path without_gz(const std::filesystem::path& file) {
   return system::lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
 }
@@ -46,7 +46,7 @@ void list_range(const scene::ValueRange& range, cells::FieldSummary& field) {
   field.nan_count = range.blanks;
 }
 
-/// The requested time step.
+/// Returns the requested time step.
 scene::TimeStepRead step_of(const StoredVolume& volume, const ReadOptions& options, const std::string& source) {
   if (volume.steps > 1) {
     scene::TimeStepRead read = scene::chosen_step(options.time_step, volume.steps, source);
@@ -57,7 +57,7 @@ scene::TimeStepRead step_of(const StoredVolume& volume, const ReadOptions& optio
   return {};
 }
 
-/// The samples in usable form, in the file or in memory; updates `volume` to describe them.
+/// Returns the samples in a usable form, in the file or in memory, and updates `volume` to describe them.
 VolumePayload usable_payload(StoredVolume& volume, std::size_t step, const std::string& source) {
   VolumePayload payload = payload_of(volume, step, source);
   if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
@@ -76,7 +76,7 @@ VolumePayload usable_payload(StoredVolume& volume, std::size_t step, const std::
   return payload;
 }
 
-/// One component of each tuple, or its length.
+/// One component of each tuple, or the length of the tuple.
 struct ChosenSamples {
   scene::Grid grid;
   scene::ComponentChoice of_tuple;
@@ -112,9 +112,11 @@ std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, Cho
                                                samples.of_tuple, swapped);
 }
 
-/// Inflates only as much of a gzip file as contains the samples, or all of it.
+/// Inflates only the part of a gzip file that contains the samples if the header determines it, otherwise the whole
+/// file.
 InflatedFile inflated_as_needed(const InputFile& file, bool is_raw) {
-  // A file that is known completely may be truncated within its header; inflating it reports that.
+  // A file whose first bytes are the whole file may be truncated within its header; inflating the whole file reports
+  // that.
   const bool is_known_whole =
       file.size <= InputFile::longest_beginning && file.beginning.size() < InputFile::longest_beginning;
   const auto end_of_samples = is_raw || !file.is_recognized || is_known_whole ? nullptr : file.format->end_of_samples;
@@ -134,7 +136,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
                             .components = volume.components,
                             .type = scene::listed_name(scene::number_type_of(volume.number))};
   field.active = volume.active;
-  field.high = 1;  // placeholder range; the choice does not depend on it
+  field.high = 1;  // a placeholder for the range, on which the choice does not depend
   const cells::FieldChoice choice = cells::choose_field(options.field, std::span(&field, 1), source);
   if (volume.has_colors.value_or(cells::look_like_colors(field)))
     cells::refuse_colors(choice, field, options.field, source);
@@ -144,7 +146,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
     return StreamedSamples{std::move(samples.grid), samples.of_tuple, volume.swapped,
                            [&](const system::ByteSink& use) { unpack_payload(volume, step, source, use); }};
   };
-  field.low = 1, field.high = 0;  // the source's range
+  field.low = 1, field.high = 0;  // an invalid range: the range of the source is used
   const bool lists_lengths = volume.components > 1 && choice.component != cells::magnitude && volume.grid.shift == 0;
   if (comes_in_parts(volume) && unpacked_to_scratch(streamed(choice.component), options, source, result)) {
     if (lists_lengths) list_range(value_range(streamed(cells::magnitude)), field);
@@ -232,7 +234,8 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
                                        file.string(), volume.source->geometry().all_samples().count()));
   for (cells::FieldSummary& field : volume.fields)
     if (field.low > field.high) list_range(range, field);
-  // Hounsfield units include air and the fill values of scanners, but not -9999.
+  // The axes apply if the values are Hounsfield units, which include air and the fill values of scanners, but not
+  // -9999.
   if (const BodyAxes axes = std::exchange(volume.axes_if_ct, BodyAxes::none);
       axes != BodyAxes::none && range.low <= -900 && range.low >= -4096 && range.high >= 200)
     volume.body_axes = axes;

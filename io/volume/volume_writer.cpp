@@ -47,7 +47,7 @@ void write_values(const scene::SampleSource& source, system::AtomicFile& out) {
 
 using TagWords = std::vector<std::pair<std::string, std::string>>;
 
-/// Strings of a VTK data set: character codes, ended by 0.
+/// Returns the strings of a VTK data set as field data: character codes, ended by 0.
 std::string field_data_of(const TagWords& words) {
   if (words.empty()) return {};
   std::string text = "\n    <FieldData>\n";
@@ -60,7 +60,7 @@ std::string field_data_of(const TagWords& words) {
   return text + "    </FieldData>";
 }
 
-/// VTK XML with one appended raw array; a rectilinear grid has its coordinates inline.
+/// Writes VTK XML with one appended raw array. The coordinates of a rectilinear grid are inline.
 void write_vtk_volume(const scene::SampleSource& source, system::AtomicFile& out, bool rectilinear,
                       const TagWords& words) {
   const scene::Grid& grid = source.grid();
@@ -75,7 +75,7 @@ void write_vtk_volume(const scene::SampleSource& source, system::AtomicFile& out
       "header_type=\"UInt64\">\n  <{} WholeExtent=\"{}\"",
       kind, kind, extent);
   if (!rectilinear) {
-    const glm::dmat3& d = g.direction;  // VTK writes it row by row
+    const glm::dmat3& d = g.direction;  // VTK writes the matrix row by row
     head += fmt::format(" Origin=\"{} {} {}\" Spacing=\"{} {} {}\" Direction=\"{} {} {} {} {} {} {} {} {}\"",
                         g.origin.x, g.origin.y, g.origin.z, g.spacing.x, g.spacing.y, g.spacing.z, d[0][0], d[1][0],
                         d[2][0], d[0][1], d[1][1], d[2][1], d[0][2], d[1][2], d[2][2]);
@@ -132,7 +132,7 @@ void write_nrrd(const scene::SampleSource& source, system::AtomicFile& out, cons
   write_values(source, out);
 }
 
-/// A property that the format cannot represent; null if it can represent everything.
+/// Returns a property of the grid that the format cannot represent; null if it can represent everything.
 const char* unsupported_property(const scene::GridGeometry& g, std::string_view extension) {
   const bool xml = extension == ".vti" || extension == ".vtr";
   if (extension == ".bricks") return nullptr;

@@ -46,7 +46,7 @@ std::uint64_t VtkArrayBytes::size_of_block(std::size_t block) const {
   return block + 1 < packed_blocks_.size() ? block_size_ : last_size_;
 }
 
-/// Reads the block table of a compressed array; false unless it fits the file.
+/// Reads the table of blocks of a compressed array. Returns false unless the table fits the file.
 bool VtkArrayBytes::read_table(std::uint64_t file_bytes) {
   std::uint64_t blocks = 0;
   if (!read_number(blocks)) return false;
@@ -66,7 +66,7 @@ bool VtkArrayBytes::read_table(std::uint64_t file_bytes) {
   return packed_size_ <= packed_.left();
 }
 
-/// Unpacks the next blocks in parallel into memory of their exact size.
+/// Unpacks the next blocks in parallel into memory of exactly their size.
 bool VtkArrayBytes::unpack(std::size_t blocks, std::byte* to) {
   std::vector<std::uint64_t> from(blocks + 1, 0);
   for (std::size_t k = 0; k < blocks; ++k) from[k + 1] = from[k] + packed_blocks_[next_ + k];
@@ -108,7 +108,7 @@ bool VtkArrayBytes::read(std::byte* to, std::uint64_t count) {
 
 namespace {
 
-/// Passes on `count` bytes, counting them in `made`; false if they end early or are damaged.
+/// Passes `count` bytes to a sink, counting them in `made`. Returns false if the bytes end early or are damaged.
 bool pass_on(const system::PositionalFile& file, const VtkArrayPlace& place, std::uint64_t count, std::uint64_t& made,
              const system::ByteSink& use) {
   auto array = VtkArrayBytes::open(file, place);

@@ -21,7 +21,7 @@ bool unpack_lz4(std::span<const std::byte> packed, std::span<std::byte> out) {
 }
 
 bool unpack_lzma(std::span<const std::byte> packed, std::span<std::byte> out) {
-  std::uint64_t memory = 256 << 20;  // the highest preset takes 65 MiB
+  std::uint64_t memory = 256 << 20;  // the highest preset needs 65 MiB
   std::size_t in_at = 0, out_at = 0;
   return ::lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const std::uint8_t*>(packed.data()), &in_at,
                                      packed.size(), reinterpret_cast<std::uint8_t*>(out.data()), &out_at,
@@ -40,7 +40,7 @@ std::optional<VtkCodec> vtk_codec_named(std::string_view compressor) {
 }
 
 bool can_unpack_to(VtkCodec codec, std::uint64_t packed, std::uint64_t unpacked) {
-  // The best ratios: 1032 for deflate, 255 for LZ4. For xz, 64 MiB of zeros reach 7,000 at the highest preset.
+  // The best ratios are 1032 for deflate and 255 for LZ4. For xz, 64 MiB of zeros reach 7,000 at the highest preset.
   const std::uint64_t best = codec == VtkCodec::zlib ? 1040 : codec == VtkCodec::lz4 ? 256 : 16384;
   return codec == VtkCodec::none ? unpacked <= packed : unpacked / best <= packed;
 }

@@ -41,7 +41,7 @@ void each_field_array(std::string_view text, const Visit& visit) {
   }
 }
 
-/// Characters up to the code 0.
+/// Returns the characters up to the code 0.
 std::string word_of_codes(std::string_view text) {
   std::string word;
   const char *at = text.data(), *const end = at + text.size();
@@ -67,13 +67,13 @@ std::string_view take_line(std::string_view& text) {
   return trimmed(line);
 }
 
-/// In a legacy file, the field data before its points: `FIELD NAME COUNT` and for each array `NAME COMPONENTS TUPLES
-/// TYPE`; binary numbers are big-endian.
+/// Returns the time in a legacy file. Its field data precede the points: `FIELD NAME COUNT` and, for each array, `NAME
+/// COMPONENTS TUPLES TYPE`; binary numbers are big-endian.
 std::optional<double> legacy_time(std::string_view text) {
   const std::string_view magic = take_line(text);
   take_line(text);  // title
   const bool is_binary = take_line(text) == "BINARY";
-  take_line(text);  // data set type
+  take_line(text);  // skips the type of the data set
   if (!magic.starts_with("# vtk DataFile") || !take_line(text).starts_with("FIELD")) return std::nullopt;
   for (int arrays = 0; arrays < 32 && !text.empty(); ++arrays) {
     std::istringstream about{std::string(take_line(text))};
@@ -126,7 +126,7 @@ std::optional<double> vtk_time_value(const std::filesystem::path& file, std::str
   std::optional<double> time;
   each_field_array(beginning, [&](std::string_view element, std::string_view content) {
     if (attribute_in(element, "Name") != "TimeValue") return;
-    // VTK writes the range of each array, and so the value of a single number in arrays that are not text.
+    // VTK writes the range of each array. For arrays that are not text, the range gives the value of a single number.
     const std::string low = attribute_in(element, "RangeMin"), high = attribute_in(element, "RangeMax");
     if (attribute_in(element, "format") == "ascii")
       time = parse_number(trimmed(content));

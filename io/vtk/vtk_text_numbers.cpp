@@ -19,11 +19,11 @@ constexpr std::size_t longest_number = 1024;
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// The type that a stream parses for 8-bit numbers; values are truncated to 8 bits.
+/// The type that a stream parses for 8-bit numbers. The result is truncated to 8 bits.
 template <class T>
 using Read = std::conditional_t<sizeof(T) == 1, std::int16_t, T>;
 
-/// Streams accept a minus sign for unsigned numbers and wrap them.
+/// Streams accept a minus sign for unsigned numbers and wrap the result.
 template <class T>
 const char* read_unsigned(const char* at, const char* end, T& number) {
   const bool negative = at < end && *at == '-';
@@ -33,7 +33,7 @@ const char* read_unsigned(const char* at, const char* end, T& number) {
   return behind;
 }
 
-/// A number too small for its floating-point type becomes 0 or the nearest subnormal; one too large is refused.
+/// A number too small for its floating-point type becomes 0 or the nearest subnormal; a number too large is refused.
 template <class T>
 const char* read_float(const char* at, const char* end, T& number) {
   const auto [behind, error] = std::from_chars(at, end, number);
@@ -47,7 +47,7 @@ const char* read_float(const char* at, const char* end, T& number) {
   return std::isfinite(number) ? behind : nullptr;
 }
 
-/// The end of the number; null if there is none.
+/// Returns the end of the number; null if there is none.
 template <class T>
 const char* read_word(const char* at, const char* end, T& number) {
   if (at + 1 < end && *at == '+' && at[1] != '-') ++at;
@@ -94,7 +94,7 @@ bool VtkTextNumbers::read_number(T& number) {
 
 std::string VtkTextNumbers::next_word() const {
   constexpr std::size_t most = 24;
-  std::size_t first = used_;  // when 1.5 is read as an integer, the 1 has been consumed
+  std::size_t first = used_;  // if 1.5 is read as an integer, the 1 was consumed
   while (first > 0 && !is_blank(text_[first - 1])) --first;
   const std::string word = text_.substr(first, most);
   return word.substr(0, static_cast<std::size_t>(std::ranges::find_if(word, is_blank) - word.begin()));

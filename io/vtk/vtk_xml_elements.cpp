@@ -17,10 +17,10 @@
 namespace tessera::io {
 namespace {
 
-/// Passes a file to the parser tag by tag, so that the end of each is known.
+/// Passes a file to the parser tag by tag, so that the position of each tag's end is known.
 class ElementWalk {
  public:
-  /// Unless `keeps`, an element is discarded when the next one begins.
+  /// Elements are discarded when the next one begins, unless `keeps`.
   ElementWalk(const system::PositionalFile& file, const std::string& source, bool keeps)
       : file_(file),
         source_(source),
@@ -31,7 +31,7 @@ class ElementWalk {
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), on_start, on_end);
 #if XML_MAJOR_VERSION > 2 || (XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION >= 6)
-    XML_SetReparseDeferralEnabled(parser_.get(), XML_FALSE);  // report tags as soon as they end
+    XML_SetReparseDeferralEnabled(parser_.get(), XML_FALSE);  // events are reported as soon as their tags end
 #endif
   }
 
@@ -64,7 +64,7 @@ class ElementWalk {
   }
 
  private:
-  /// The callbacks are called from C: nothing may be thrown through it.
+  /// The callbacks are called from C, so they must not throw.
   static void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attributes) {
     ElementWalk& walk = *static_cast<ElementWalk*>(user);
     if (walk.fault_) return;
@@ -95,14 +95,14 @@ class ElementWalk {
                                          source_, at_, XML_ErrorString(XML_GetErrorCode(parser_.get()))));
   }
 
-  /// Whether a tag at at_ continues with `c`.
+  /// Whether the next character of the tag at at_ is `c`.
   [[nodiscard]] bool next_is(char c) const {
     char next = '\0';
     if (size_ - at_ > 1) file_.read(at_ + 1, reinterpret_cast<std::byte*>(&next), 1);
     return next == c;
   }
 
-  /// The file from at_ on; empty at its end.
+  /// Returns the text of the file from at_ on; empty at the end of the file.
   std::string_view window() {
     constexpr std::uint64_t most = 256 << 10;
     if (at_ >= window_at_ + text_.size()) {
@@ -122,8 +122,8 @@ class ElementWalk {
   std::uint64_t window_at_ = 0, at_ = 0;
   std::vector<VtkXmlElement> elements_;
   std::size_t depth_ = 0;
-  bool is_open_ = false;   ///< the last element's end tag has not been parsed
-  bool is_new_ = false;    ///< it began in the text parsed last
+  bool is_open_ = false;   ///< the end tag of the last element has not been parsed
+  bool is_new_ = false;    ///< the last element began in the text parsed last
   bool in_array_ = false;  ///< numbers are being skipped up to the next tag
   bool is_blank_ = false;  ///< no number has been found yet
   std::exception_ptr fault_;

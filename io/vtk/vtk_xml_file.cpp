@@ -29,8 +29,8 @@ const VtkXmlArray& points_of(const VtkXmlOpened& of, std::size_t piece) {
   return arrays[0];
 }
 
-/// Coordinates and corners of meshes compress by 2 to 50 times: throws if `bytes` of them cannot come from a file of
-/// this size, before memory is allocated.
+/// Throws if `bytes` of coordinates or corners cannot come from a file of this size, before memory is allocated. Those
+/// of meshes compress by a factor of 2 to 50.
 void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char* what) {
   constexpr std::uint64_t always = 64 << 20, times = 128;
   if (const std::uint64_t size = of.file->size(); bytes > always && (bytes - always) / times > size)
@@ -39,7 +39,7 @@ void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char*
         of.source, what, bytes >> 20, size));
 }
 
-/// Points of all pieces; no value if there are none or their types differ.
+/// Adds the points of all pieces; no value if there are none or their types differ.
 std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   VtkXmlWhole whole;
   for (std::size_t p = 0; p < of.grid.pieces.size(); ++p) {
@@ -59,7 +59,7 @@ std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   return hold_whole(of, std::move(whole), {.type = type});
 }
 
-/// The points of cells; for tets one tuple each.
+/// Adds the point indices of cells; for tets, one tuple per cell.
 ForeignArray hold_connectivity(const VtkXmlOpened& of, VtuCells& cells) {
   ForeignArray as{.type = NumberType::uint32, .components = cells.are_tets ? 4 : 1};
   if (!cells.connectivity.empty()) return of.arrays->hold_vector(std::move(as), std::move(cells.connectivity));
@@ -100,7 +100,7 @@ void hold_cells(const VtkXmlOpened& of, ForeignPart& part) {
   part.face_locations = of.arrays->hold_vector({.type = NumberType::int64}, std::move(cells.face_locations));
 }
 
-/// Parses exactly as many numbers as there are places, separated by blanks; false for other words.
+/// Parses exactly as many numbers as `numbers` has, separated by blanks. Returns false for any other text.
 template <class Numbers>
 bool read_numbers(const std::string& text, Numbers& numbers) {
   const char *at = text.data(), *const end = at + text.size();
@@ -117,9 +117,9 @@ bool read_numbers(const std::string& text, Numbers& numbers) {
   return at == end;
 }
 
-/// Sets the attributes of a grid of cells; false if this reader does not support it.
+/// Sets the attributes of a grid of cells. Returns false if this reader does not support the grid.
 bool set_grid(VtkXmlGrid& grid, ForeignPart& part) {
-  constexpr std::int64_t most = 1 << 20;  // so that points can be counted
+  constexpr std::int64_t most = 1 << 20;  // limit, so that point counts do not overflow
   std::array<std::int64_t, 6> extent{};
   VtkXmlPiece& piece = grid.pieces.front();
   if (grid.pieces.size() != 1 || !read_numbers(grid.element.word("WholeExtent"), part.extent) ||
@@ -132,7 +132,7 @@ bool set_grid(VtkXmlGrid& grid, ForeignPart& part) {
     piece.points *= static_cast<std::uint64_t>(high - low + 1);
     piece.cells *= static_cast<std::uint64_t>(high - low);
   }
-  // A grid without fields takes a few bytes, whatever its size.
+  // The file of a grid without fields has a few bytes, whatever the size of the grid.
   if (piece.point_fields.arrays.empty() && piece.cell_fields.arrays.empty()) return false;
   if (grid.element.name != "ImageData") return true;
   part.kind = ForeignPart::Kind::image;
@@ -153,7 +153,7 @@ bool hold_axes(const VtkXmlOpened& of, ForeignPart& part) {
   return true;
 }
 
-/// Sets the points and cells of the data set; false if this reader does not support it.
+/// Sets the points and cells of the data set. Returns false if this reader does not support them.
 bool set_part(const VtkXmlOpened& of, ForeignPart& part) {
   const std::string& kind = of.grid.element.name;
   bool agree = true;

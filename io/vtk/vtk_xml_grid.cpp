@@ -20,15 +20,15 @@ namespace {
 
 constexpr int newest_major = 2;
 constexpr std::int64_t most_components = 1 << 20;
-constexpr std::uint64_t most_tuples = 1ull << 40;  // so that bytes can be counted
+constexpr std::uint64_t most_tuples = 1ull << 40;  // limit, so that byte counts do not overflow
 
 /// Thrown for features that this reader does not support.
 struct Unknown {};
 
 /// Encoding shared by all arrays of a file.
 struct Packing {
-  VtkArrayPlace place;                         ///< of an array, except its position
-  std::optional<std::uint64_t> appended_at{};  ///< after the underscore
+  VtkArrayPlace place;                         ///< encoding of an array; the position is not set
+  std::optional<std::uint64_t> appended_at{};  ///< position after the underscore
   bool appended_base64 = false;
 };
 
@@ -90,13 +90,13 @@ VtkXmlArray array_of(const VtkXmlElement& element, const Packing& packing) {
   std::int64_t offset = 0;
   if (!read_whole_number(element.word("offset"), offset) || !packing.appended_at) throw Unknown();
   array.place.base64 = packing.appended_base64;
-  // A position before the file's beginning wraps to one far behind its end.
+  // A position before the beginning of the file wraps to a position far beyond its end.
   if (__builtin_add_overflow(*packing.appended_at, static_cast<std::uint64_t>(offset), &array.place.first_byte))
     array.place.first_byte = array.place.end;
   return array;
 }
 
-/// Interprets the elements in order. A second element of a kind within a piece replaces the first.
+/// Interprets the elements in order. If a piece has two elements of a kind, the second replaces the first.
 class GridElements {
  public:
   GridElements(const std::vector<VtkXmlElement>& elements, const system::PositionalFile& file,
@@ -128,7 +128,7 @@ class GridElements {
   }
 
  private:
-  /// "MAJOR.MINOR"; absent in old files.
+  /// Parses "MAJOR.MINOR", which is absent in old files.
   void read_version(const std::string& version) {
     const char *at = version.data(), *const end = at + version.size();
     const auto major = std::from_chars(at, end, grid_.major);

@@ -15,14 +15,14 @@
 namespace tessera::io {
 namespace {
 
-/// Bytes read at once: many of VTK's blocks (32 KiB), within the cache; several larger blocks, one per thread, up to a
-/// limit.
+/// Number of bytes that are read at once: many of VTK's blocks (32 KiB), within the cache. If blocks are larger,
+/// several are read, one per thread, up to a limit.
 constexpr std::size_t bytes_at_once = 1 << 20, most_at_once = 16 << 20, blocks_at_once = 4;
 
 /// Reads the numbers of an array sequentially, in either encoding.
 class Numbers {
  public:
-  /// No value if it is damaged.
+  /// Opens an array. No value if it is damaged.
   static std::optional<Numbers> open(const system::PositionalFile& file, const VtkXmlArray& array) {
     if (!array.type) return std::nullopt;
     const VtkArrayPlace& place = array.place;
@@ -31,7 +31,7 @@ class Numbers {
     return bytes ? std::optional(Numbers(array, *std::move(bytes))) : std::nullopt;
   }
 
-  /// Upper bound of the numbers available.
+  /// Upper bound of the number of available numbers.
   [[nodiscard]] std::uint64_t most() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     if (text != nullptr) return text->left();
@@ -46,7 +46,7 @@ class Numbers {
                                  : bytes_at_once;
   }
 
-  /// The word that is not a number of the array's type, if read() failed on text; else empty.
+  /// If read() failed on text, returns the word that is not a number of the array's type; otherwise empty.
   [[nodiscard]] std::string wrong_word() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     return text != nullptr ? text->next_word() : std::string();

@@ -31,8 +31,8 @@ const VtkXmlFields& first_fields(const VtkXmlGrid& grid, const VtkXmlFieldsOf& k
   return (first != grid.pieces.end() ? *first : grid.pieces.front()).*kind.fields;
 }
 
-/// Point fields, or cell fields, of at most this total size are kept when they are tallied, so that they are decoded
-/// once.
+/// Largest total size of point fields, or of cell fields, for which the values are kept when they are tallied, so that
+/// they are decoded only once.
 constexpr std::uint64_t most_decoded = 16 << 20;
 
 void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field, VtkXmlDecoded* decoded) {

@@ -19,7 +19,7 @@ namespace tessera::io {
 namespace {
 
 constexpr std::uint8_t tetrahedron = vtk_number(CellType::tetra);
-/// VTK's numbers of hexahedra of any order: of its first classes (67), Lagrange and Bezier.
+/// VTK's type numbers of hexahedra of any order: its oldest (67), Lagrange and Bezier.
 constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, vtk_number(CellType::lagrange_hexahedron),
                                                                 vtk_number(CellType::bezier_hexahedron)};
 
@@ -32,7 +32,7 @@ void add_types(const system::PositionalFile& file, const VtkXmlSegment& types, c
   });
 }
 
-/// The file stores the end of each cell.
+/// Reads offsets; the file stores the end of each cell.
 void add_offsets(const system::PositionalFile& file, const VtkXmlSegment& ends, const std::string& source,
                  VtuCells& cells) {
   const std::uint64_t first = cells.offsets.back();
@@ -59,7 +59,7 @@ bool all_are_tets(const VtuCells& cells) {
   return true;
 }
 
-/// VTK's HigherOrderDegrees of a piece's cells; empty without that array.
+/// Returns VTK's HigherOrderDegrees of a piece's cells; empty if the piece does not have that array.
 std::vector<std::array<int, 3>> degrees_of(const system::PositionalFile& file, const VtkXmlPiece& piece,
                                            const std::string& source) {
   const auto& arrays = piece.cell_fields.arrays;

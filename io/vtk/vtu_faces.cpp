@@ -45,7 +45,7 @@ struct PieceFaces {
   }
 };
 
-/// Checked end offset of the lists; a negative offset is ignored.
+/// Returns the last end of the lists, after checking the ends. Negative ends are ignored.
 std::int64_t end_of_lists(const PieceFaces& of, std::span<const std::int64_t> ends) {
   std::int64_t last = 0;
   for (std::size_t c = 0; c < ends.size(); ++c) {
@@ -87,8 +87,8 @@ void add_numbered_faces(const PieceFaces& of) {
   const std::vector<std::int64_t> face_ends = of.numbers("face_offsets", static_cast<std::uint64_t>(faces));
   const std::vector<std::int64_t> corners =
       of.numbers("face_connectivity", static_cast<std::uint64_t>(end_of_lists(of, face_ends)));
-  // Two cells share a face, so lists of faces are at most twice as long as the faces: no file can create many copies of
-  // a large one.
+  // At most two cells share a face, so lists of faces are at most twice as long as the faces. The limit prevents a file
+  // from creating many copies of a large list.
   const std::size_t most = of.cells.faces.size() + 2 * (corners.size() + face_ends.size()) + cell_ends.size();
   std::size_t at = 0;
   for (std::size_t c = 0; c < cell_ends.size(); ++c) {

@@ -19,7 +19,7 @@ namespace {
 
 using scene::Association;
 
-/// A field's numbers: held by their source until first read, and here afterwards.
+/// The numbers of a field. Their source holds them until they are first read, and this object afterwards.
 class FetchedArray {
  public:
   FetchedArray(const ForeignFile& file, ForeignArray array)
@@ -106,7 +106,7 @@ void check_tets(std::span<const scene::Tet> tets, std::size_t points, const std:
       if (corner >= points) refuse_corner(t, corner, points, where);
 }
 
-/// All values of an array stored as `Stored`, converted to T.
+/// Reads all values of an array that are stored as `Stored`, and converts them to T.
 template <class Stored, class T>
 void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vector<T>& to, const std::string& where) {
   system::reserve_large(to, array.bytes() / sizeof(Stored));
@@ -155,7 +155,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
   }
-  // Files of mixed cells were checked for this by their reader; Exodus blocks are passed unchanged.
+  // Other readers checked files of mixed cells for this; blocks of Exodus arrive unchecked.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(),
                                     [](std::uint8_t t) { return t == vtk_number(CellType::tetra); });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)
@@ -166,7 +166,8 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
   block.types = {}, block.offsets = {}, block.connectivity = {};
 }
 
-/// The hexahedra between n[0] x n[1] x n[2] points; a flat grid has only faces or lines, which are counted and skipped.
+/// Adds the hexahedra between n[0] x n[1] x n[2] points. A flat grid has only faces or lines, which are counted and
+/// skipped.
 void add_grid_cells(const std::array<std::int64_t, 3>& n, cells::CellBlock& block, const std::string& where) {
   std::uint64_t points = 1;
   for (const std::int64_t side : n)
@@ -287,7 +288,7 @@ cells::CellBlock block_of(const ForeignFile& file, const ForeignPart& part, Grid
   block.point_ghost = ghost_bits(file, part.point_fields, block.positions.size());
   block.cell_ghost = ghost_bits(file, part.cell_fields, block.cell_count());
   add_foreign_fields(file, part, Association::point, block.positions.size(), block, where);
-  // A surface's cell data in VTK list its points and lines before its polygons.
+  // In VTK, the cell data of a surface contain the values of points and lines before those of polygons.
   if (part.kind != ForeignPart::Kind::surface ||
       std::ranges::all_of(part.cell_fields, [&](const ForeignArray& a) { return a.tuples == block.cell_count(); }))
     add_foreign_fields(file, part, Association::cell, block.cell_count(), block, where);

@@ -23,7 +23,8 @@ void make_regular_if_even(const std::array<double, 3>& roundings, scene::GridGeo
     const std::vector<double>& c = g.coordinates[a];
     if (c.size() < 2 || !(c.back() > c.front())) return;
     const double step = (c.back() - c.front()) / static_cast<double>(c.size() - 1);
-    // Both ends are rounded; sums and products of writer and reader add a few units in the last place of a double.
+    // Both ends of the axis are rounded; sums and products in the writer and here add a few units in the last place of
+    // a double.
     const double rounding = 2 * roundings[a] + 0x1p-50;
     const double most = std::min(rounding * std::max(std::abs(c.front()), std::abs(c.back())), 1e-3 * step);
     for (std::size_t i = 0; i < c.size(); ++i)
@@ -44,7 +45,7 @@ void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
         glm::dvec3(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) * image.spacing[axis];
   scene::set_axes(g, steps);
   g.origin = {image.origin[0], image.origin[1], image.origin[2]};
-  for (std::size_t axis = 0; axis < 3; ++axis)  // the origin belongs to index 0, which may be outside the extent
+  for (std::size_t axis = 0; axis < 3; ++axis)  // the file's origin is that of index 0, which may be outside the extent
     if (image.extent[2 * axis] != 0) g.origin += steps[axis] * static_cast<double>(image.extent[2 * axis]);
 }
 

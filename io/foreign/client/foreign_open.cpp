@@ -30,7 +30,7 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   if (!opened.with_surfaces && contents.parts.size() > 1)
     for (const ForeignPart& part : contents.parts)
       if (part.kind == ForeignPart::Kind::surface) contents.surface_names.push_back(part.name);
-  if (!contents.block_names.empty()) return opened;  // the reader has checked them
+  if (!contents.block_names.empty()) return opened;  // the reader has checked the names
   for (const ForeignPart& part : contents.parts)
     if (part.kind != ForeignPart::Kind::surface || opened.with_surfaces) contents.block_names.push_back(part.name);
   const cells::BlockChoice choice = request.value("blocks", cells::BlockChoice());

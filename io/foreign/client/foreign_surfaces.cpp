@@ -28,7 +28,7 @@ void add_points(const ForeignFile& file, const ForeignArray& points, cells::Surf
   }
 }
 
-/// Offsets of either width.
+/// Reads offsets, which may be 32 or 64 bits wide.
 std::vector<std::int64_t> offsets_of(const ForeignFile& file, const ForeignArray& array) {
   if (array.type == NumberType::int64) return numbers_of<std::int64_t>(file, array);
   if (array.type != NumberType::int32) refuse_surface(file.source);

@@ -35,7 +35,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Slots of the window. One is read while the other is filled; both stay in the processor's cache.
+/// Slots of the window. One slot is read while the other is filled; both fit into the processor's cache.
 constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
 bool is_picture(const std::filesystem::path& file) {
@@ -43,10 +43,10 @@ bool is_picture(const std::filesystem::path& file) {
   return std::ranges::find(extensions, system::lower_extension(file)) != extensions.end();
 }
 
-/// The caller's environment without variables that would make the helper start as an MPI rank.
+/// Returns the caller's environment without variables that would make the helper start as an MPI rank.
 std::vector<char*> helper_environment() {
-  // Large pages for malloc (glibc 2.35): readers fill hundreds of megabytes once, and page faults are most of that
-  // time.
+  // Makes malloc use large pages (glibc 2.35): readers fill hundreds of megabytes once, and most of that time are page
+  // faults.
   static char tunables[] = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> kept;
   if (::getenv("GLIBC_TUNABLES") == nullptr) kept.push_back(tunables);
@@ -65,13 +65,13 @@ std::vector<char*> helper_environment() {
                      "it reads files of other programs' formats; install it with the library");
 }
 
-/// Whether the memory of this process is limited below the machine's; its children inherit the limit.
+/// Whether this process may use less memory than the machine has. Its children inherit the limit.
 bool is_limited() {
   rlimit limit{};
   return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-/// How a process ended. `status` is waitpid's if `known`.
+/// Describes how a process ended. `status` is the result of waitpid if `known`.
 HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& task) {
   using enum scene::ErrorCode;
   if (!has_begun)
@@ -103,7 +103,7 @@ HelperDeath waiting_death(const HelperTask& task) {
                       task.words)};
 }
 
-/// A progress message that the helper sends before its reply: its progress, or the file that it is reading.
+/// A message that the helper sends before its reply: the progress, or the file that it is reading.
 struct Course {
   std::optional<double> done;
   std::string reading;
@@ -174,16 +174,16 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   socket_ = system::Descriptor(ends[0]);
   const system::Descriptor theirs(ends[1]);
 
-  constexpr int helper_end = 3;  // readers/common/serve.cpp
+  constexpr int helper_end = 3;  // the descriptor that readers/common/serve.cpp uses
   // The caller handles signals that a terminal sends to both processes; the helper ends when the caller ends.
   system::SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
-  // Must be the first action: if the caller has closed its standard descriptors, `theirs` may be one of those opened
-  // next.
+  // Must be the first action: if the caller has closed its standard descriptors, `theirs` may be one of the descriptors
+  // that the following actions open.
   ::posix_spawn_file_actions_adddup2(&plan.files, theirs.get(), helper_end);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  // The helper ends with its caller, if necessary as soon as its own libraries are loaded.
+  // The helper ends with its caller, at the latest when it has loaded its own libraries.
   pid_t process = -1;
   if (const int error = plan.start(program, {program.string()}, helper_environment().data(), process); error != 0)
     fail_to_start(task_.reader, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
@@ -191,7 +191,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
 }
 
 HelperProcess::~HelperProcess() {
-  socket_ = system::Descriptor();  // signals the helper to end
+  socket_ = system::Descriptor();  // closing the socket signals the helper to end
   forget();
   while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -263,7 +263,7 @@ HelperMessage HelperProcess::receive(const std::string& subject) {
 
 namespace {
 
-/// The contents of a reply. Throws the error that it reports.
+/// Returns the contents of a reply. Throws the error that the reply reports.
 Json content_of(const HelperMessage& reply, const std::string& subject) {
   Json json;
   std::string line;
@@ -273,7 +273,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
     if (const auto opened = json.find("opened"); opened != json.end())
       for (const Json& name : *opened) {
         const std::filesystem::path file(std::string(name.get_binary().begin(), name.get_binary().end()));
-        // Some readers open every file of a directory; images of earlier runs there are not inputs.
+        // Some readers open every file of a directory, including images of earlier runs, which are not inputs.
         if (!is_picture(file)) system::note_read(file);
       }
     if (const auto error = json.find("error"); error != json.end()) {
@@ -366,7 +366,7 @@ void HelperProcess::drop(std::span<const std::uint64_t> arrays) noexcept {
       static_cast<void>(send_message(
           socket_.get(),
           Json::to_cbor({{"do", "drop"}, {"arrays", std::vector<std::uint64_t>(arrays.begin(), arrays.end())}})));
-  } catch (const std::exception&) {  // the helper then keeps them until it ends
+  } catch (const std::exception&) {  // the helper then keeps the arrays until it ends
   }
 }
 

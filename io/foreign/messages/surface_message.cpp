@@ -26,7 +26,7 @@ std::vector<T> unpacked(const Json& json) {
   return values;
 }
 
-/// The next number of a list.
+/// Returns the next number of a list.
 template <class T>
 T next(const std::vector<T>& values, std::size_t& at) {
   if (at >= values.size()) throw std::invalid_argument("a list too short");
@@ -36,7 +36,7 @@ T next(const std::vector<T>& values, std::size_t& at) {
 }  // namespace
 
 Json json_of(const cells::Surface& surface) {
-  std::vector<std::uint32_t> counts, corners;  // per facet: number of polygons, their lengths, its holes
+  std::vector<std::uint32_t> counts, corners;  // per facet: number of polygons, their lengths, number of holes
   std::vector<glm::dvec3> holes;
   for (const cells::Facet& facet : surface.facets) {
     counts.push_back(static_cast<std::uint32_t>(facet.polygons.size()));
