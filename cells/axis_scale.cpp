@@ -12,7 +12,7 @@ namespace {
 
 constexpr double thinnest = 1.0 / 20;
 
-/// The largest of 1, 2 or 5 times a power of ten that is not above `number`.
+/// Returns the largest number that is 1, 2 or 5 times a power of ten and not above `number`.
 double round_factor(double number) {
   const double unit = std::pow(10.0, std::floor(std::log10(number)));
   const double digits = number / unit;
@@ -26,7 +26,7 @@ glm::dvec3 scale_for_degrees(const Box& box) {
   const double wide = std::max(side.x, side.y), narrow = std::min(side.x, side.y);
   if (box.empty() || !(wide > 0) || !(side.z > 0)) return glm::dvec3(1);
   const double longest = std::max(wide, side.z);
-  // Longitude and latitude are in proportion, whatever their ratio.
+  // Longitude and latitude are not scaled relative to each other, whatever their ratio.
   const bool is_thin = side.z < thinnest * longest || (wide < longest && narrow < thinnest * longest);
   if (!is_thin) return glm::dvec3(1);
   return {1, 1, round_factor(wide / 4 / side.z)};

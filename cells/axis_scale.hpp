@@ -10,21 +10,23 @@
 #include "cells/cell_block.hpp"
 #include "tessera/camera.hpp"
 
-/// Scales the world's axes by a factor each (ReadOptions::axis_scale), requested or chosen.
+/// Scales each axis of the world by a factor (ReadOptions::axis_scale), which the user requested or this code chose.
 namespace tessera::cells {
 
-/// For x and y in degrees and z a length: 1, unless the box is thinner than 1:20; then z is multiplied by the largest
-/// of 1, 2 or 5 times a power of ten that makes it at most a quarter of the longer of x and y.
+/// Returns the scale for a box whose x and y are in degrees, while z is a length. It is 1, unless the box is thinner
+/// than 1:20. Then z is multiplied by the largest of 1, 2 or 5 times a power of ten that makes the extent in z at most
+/// a quarter of the longer of x and y.
 glm::dvec3 scale_for_degrees(const Box& box);
 
-/// The requested scale; otherwise, if `xy_in_degrees`, one derived from the box, with a note; otherwise 1.
+/// Returns the requested scale. Without a request, returns the scale derived from the box if `xy_in_degrees`, with a
+/// note, and 1 otherwise.
 glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degrees, const Box& box,
                         std::vector<std::string>& notes);
 
 /// Scales the points of cells.
 void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale);
 
-/// Box around the finite points of cells.
+/// Returns the box around the finite points of cells.
 Box box_of_points(std::span<const CellBlock> blocks);
 
 }  // namespace tessera::cells

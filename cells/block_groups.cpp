@@ -18,7 +18,8 @@ BlockField field_of_numbers(const std::string& name, std::span<const std::int64_
                          std::vector<double>(numbers.begin(), numbers.end()));
 }
 
-/// The cells with a number, or all, with the points that they use. All entries of `local` are unset before and after.
+/// Returns the cells with a number, or all cells, with the points that they use. Before and after the call, all entries
+/// of `local` are unset.
 CellBlock group_of(const CellBlock& all, std::span<const std::int64_t> numbers, std::optional<std::int64_t> number,
                    std::vector<std::uint32_t>& local) {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();

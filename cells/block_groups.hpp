@@ -10,9 +10,10 @@
 
 namespace tessera::cells {
 
-/// Divides a block of cells without faces or fields by a number per cell. Each number makes a block, in ascending
-/// order, named "WORD NUMBER", with the points used by its cells and the cell field `field` of the numbers. A single
-/// number makes one block without name and field, more than 256 make one block with the field.
+/// Divides a block of cells, without faces and fields, by a number that each cell has. The cells with the same number
+/// become a block named "WORD NUMBER", with the points that they use and a cell field `field` that contains the number;
+/// blocks are in ascending order of the numbers. If all numbers are equal, the result is one block without name and
+/// field; if there are more than 256 numbers, it is one block with the field.
 std::vector<CellBlock> blocks_by_number(const CellBlock& all, std::span<const std::int64_t> numbers,
                                         const std::string& word, const std::string& field);
 

@@ -23,7 +23,7 @@ using scene::Tet;
 /// Number of tets allowed for each higher-order cell, in addition to CurvedSettings::all for all of them.
 constexpr std::uint64_t each_curved_cell = 64;
 
-/// Counters for cells of a kind and for the tangled ones among them; null: not counted.
+/// Returns the counters for cells of a kind and for the tangled cells among them; null: not counted.
 std::array<std::uint64_t MeshCounts::*, 2> counters_of(CellKind kind) {
   switch (kind) {
     case CellKind::hexahedron:
@@ -129,7 +129,7 @@ void BlockCells::split_cell(std::size_t c, SplitScratch& work, BlockTets& out) c
     keep_filled(c, work.polyhedra, out);
     return;
   }
-  // Repeated corners may make the surface open.
+  // Repeated corners may have made the surface open.
   work.tets.clear();
   cells::split_cell(shape.kind, corner, points_, work.tets);
   keep_tets(
@@ -146,8 +146,8 @@ void BlockCells::split_curved(std::size_t c, SplitScratch& work, BlockTets& out)
                     source_, place(c), curved_.settings().limit));
   }
   const CurvedSplitter& split = work.curved.splitter;
-  // Whether the limit is exceeded depends on all cells, whichever thread is faster; only the cell at which it is
-  // detected depends on timing.
+  // Whether the limit is exceeded depends only on all cells together. Which cell detects that depends on the timing of
+  // threads.
   const std::uint64_t so_far = curved_tets_.fetch_add(split.tets().size()) + split.tets().size();
   if (so_far > most_curved_tets_)
     throw scene::bad_input(
@@ -211,7 +211,7 @@ std::span<const std::uint32_t> BlockCells::faces_of(std::size_t c) const {
   return std::span(block_.faces).subspan(first + 1, end - first - 1);
 }
 
-/// Takes over the splitter's result for a cell. Returns whether its tets overlap.
+/// Appends the splitter's result for a cell. Returns whether its tets overlap.
 bool BlockCells::keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const {
   const auto own = static_cast<std::uint32_t>(points_.size());
   const auto before = static_cast<std::uint32_t>(out.added.size());
@@ -226,7 +226,7 @@ bool BlockCells::keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTet
   return overlap;
 }
 
-/// Whether a cell is a ghost, hidden or not finite; counts it if so.
+/// Whether a cell is left out because it is a ghost, hidden or not finite. Counts cells that are left out.
 bool BlockCells::is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const {
   const std::uint8_t ghost = block_.cell_ghost.empty() ? 0 : block_.cell_ghost[c];
   if (ghost & duplicate_cell)
@@ -240,7 +240,7 @@ bool BlockCells::is_left_out(std::size_t c, std::span<const std::uint32_t> corne
   return true;
 }
 
-/// Returns whether the tets overlap.
+/// Appends tets. Returns whether they overlap.
 template <class PlaceOf>
 bool BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, const PlaceOf& place_of,
                            BlockTets& out) const {
@@ -248,7 +248,7 @@ bool BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, const 
   for (const Tet& tet : cell_tets) {
     const glm::dvec3 a = place_of(tet[0]), b = place_of(tet[1]), p = place_of(tet[2]), q = place_of(tet[3]);
     // A tet with two coincident corners is flat: two of its faces are the same triangle and the other two have no area.
-    // Without it, its two neighbours are face to face.
+    // If the tet is dropped, its two neighbours still share a face.
     if (a == b || a == p || a == q || b == p || b == q || p == q) {
       ++out.counts.tets_collapsed;
       continue;

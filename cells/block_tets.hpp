@@ -20,28 +20,29 @@ namespace tessera::cells {
 
 /// The tets of some of a block's cells.
 struct BlockTets {
-  std::vector<scene::Tet> tets;      ///< corners are indices of the block's points, followed by those of `added`
-  std::vector<std::uint64_t> cells;  ///< index in the block of each tet's cell
+  std::vector<scene::Tet> tets;      ///< corners: indices of the block's points, then of `added`
+  std::vector<std::uint64_t> cells;  ///< for each tet, the index in the block of its cell
   std::vector<glm::dvec3> added;     ///< additional points at which cells are split
-  std::vector<double> added_values;  ///< one per added point; empty for cell data
+  std::vector<double> added_values;  ///< one value per added point; empty for cell data
   std::vector<std::uint32_t> nodes;  ///< nodes of the divided higher-order cells; few are corners of tets
   HigherOrderCells curved;
-  MeshCounts counts;  ///< without points and tets
+  MeshCounts counts;  ///< counts of cells only, not of points and tets
   std::exception_ptr error;
 };
 
-/// The cells of a block: which are kept, and the tets into which they are split. Threads may split different cells in
-/// parallel.
+/// The cells of a block: which of them are kept, and into which tets they are split. Several threads may split
+/// different cells of the block in parallel.
 class BlockCells {
  public:
-  /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
-  /// messages. All outlive this. `before` counts the tets of other blocks' cells.
+  /// `points` and `values` are those of the block; `association` determines whether the values are those of points or
+  /// of cells. `source` is for messages. All arguments must outlive this object. `before` counts the tets of cells of
+  /// other blocks.
   BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
              scene::Association association, const std::string& source, const CurvedSettings& curved = {},
              const HigherOrderCells& before = {});
 
   [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
-  /// Whether any cells are divided into many tets each.
+  /// Whether any cells are higher-order cells, each of which is divided into many tets.
   [[nodiscard]] bool divides() const { return curved_.any(); }
 
   /// Splits the cells [first, last); overwrites `out`. Throws Error(bad_input) for a cell that cannot be split.

@@ -15,42 +15,43 @@
 
 namespace tessera::cells {
 
-/// Selects the length of a field's tuples instead of one component.
+/// As the number of a component: the length of the field's tuples instead of one component.
 inline constexpr int magnitude = -1;
 
-/// One array of a block, read on demand so that only the chosen field is ever converted.
+/// One array of a block. Its values are read on demand, so that only the chosen field is converted.
 struct BlockField {
   std::string name;
   scene::Association association = scene::Association::point;
   int components = 1;
   std::string type;  ///< "float", "int64", ...
   std::size_t tuples = 0;
-  bool active = false;                 ///< the file marks it as its scalars or vectors
-  bool ids = false;                    ///< the file marks it as ids
-  std::optional<NumberTally> tally{};  ///< set if known without reading
+  bool active = false;                 ///< the file marks the array as its scalars or vectors
+  bool ids = false;                    ///< the file marks the array as ids
+  std::optional<NumberTally> tally{};  ///< set if it is known without reading the values
   /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
   std::function<void(int component, std::size_t first, std::span<double> out)> read;
 };
 
-/// A field that owns its values, `components` per tuple.
+/// Returns a field that owns its values, `components` per tuple.
 BlockField field_of_values(std::string name, std::string type, scene::Association association, int components,
                            std::vector<double> values);
 
-/// Part of a mesh as stored in a file, before splitting: one block of an Exodus or PLOT3D file; other files may have a
-/// single one.
+/// A part of a mesh as stored in a file, before its cells are split: for example one block of an Exodus or PLOT3D file.
+/// Many other files have only a single block.
 ///
-/// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
+/// Shape   Cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
 ///         connectivity[offsets[c + 1]]. If all cells are tetrahedra they may be in `tets`, with the other three empty.
 ///         The points of a polyhedron are those of its faces: at face_locations[c], `faces` contains the number of
-///         faces and, for each face, its number of points and these points. For other cells it is no_faces; without
-///         polyhedra both are empty. Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
-/// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
-///         < positions.size(); require_faces() checks faces. Positions and fields may hold NaN.
+///         faces and, for each face, its number of points and these points. For other cells face_locations[c] is
+///         no_faces. If there are no polyhedra, both arrays are empty. Ghost arrays contain vtkGhostType bits for each
+///         point or cell, or are empty.
+/// Holds   The reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
+///         < positions.size(); require_faces() checks faces. Positions and fields may contain NaN.
 struct CellBlock {
   static constexpr std::int64_t no_faces = -1;
 
-  std::string name;    ///< for messages; empty if it is the only one
-  std::string source;  ///< for messages: the file that contains it, if that is a piece of the requested file
+  std::string name;    ///< name in messages; empty if there is only one block
+  std::string source;  ///< file name in messages, if the block is from a piece of the requested file
   std::vector<glm::dvec3> positions;
   std::vector<std::uint8_t> types;
   std::vector<std::uint64_t> offsets;
@@ -64,9 +65,9 @@ struct CellBlock {
   [[nodiscard]] std::size_t cell_count() const { return types.empty() ? tets.size() : types.size(); }
 };
 
-/// Checks the faces of a block's polyhedra; types, offsets and positions must be set. Throws Error(bad_input) that
-/// begins with `where` and names the cell, unless every cell has a location, counts and points are in range, and faces
-/// belong to one cell only.
+/// Checks the faces of a block's polyhedra; types, offsets and positions must be set. Every cell must have a location,
+/// counts and points must be in range, and no faces may belong to two cells. Otherwise throws Error(bad_input) that
+/// begins with `where` and names the cell.
 void require_faces(const CellBlock& block, const std::string& where);
 
 }  // namespace tessera::cells

@@ -12,8 +12,8 @@
 namespace tessera::cells {
 namespace {
 
-// VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). The wedge's base is oriented outward there; the others'
-// inward.
+// Faces in VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). In VTK the base of the wedge is oriented outward,
+// the base of the others inward.
 constexpr CellFace tet_faces[] = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {0, 3, 2}}};
 constexpr CellFace hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
                                          {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
@@ -31,7 +31,7 @@ constexpr CellFace hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7
 // A voxel numbers its corners x first, then y, then z.
 constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
 
-/// Total order of a cell's corners: by position, coincident ones by their index in the cell.
+/// Total order of the corners of a cell: by position, and for coincident corners by their index in the cell.
 struct CornerOrder {
   std::array<glm::dvec3, 12> p;
 
@@ -40,14 +40,14 @@ struct CornerOrder {
 
 using Triangle = std::array<std::uint8_t, 3>;
 
-/// Up to 12 tets of one cell, in its corner numbers.
+/// Up to 12 tets of one cell, in the corner numbers of the cell.
 struct LocalTets {
   std::array<std::array<std::uint8_t, 4>, 12> tet;
   int count = 0;
   void push_back(const std::array<std::uint8_t, 4>& t) { tet[count++] = t; }
 };
 
-/// The triangles, oriented outward, of all faces that do not contain `apex`.
+/// Collects the triangles, oriented outward, of all faces that do not contain `apex`. Returns their number.
 int far_triangles(std::span<const CellFace> faces, std::uint8_t apex, const CornerOrder& less,
                   std::array<Triangle, 12>& triangles) {
   int count = 0;
@@ -62,10 +62,11 @@ int far_triangles(std::span<const CellFace> faces, std::uint8_t apex, const Corn
   return count;
 }
 
-/// The corner that shares no face with corner `apex` of a hexahedron.
+/// For each corner of a hexahedron, the corner that does not share a face with it.
 constexpr std::array<std::uint8_t, 8> opposite_in_hexahedron = {6, 7, 4, 5, 2, 3, 0, 1};
 
-/// If no cut meets `far`, the three triangles around it are a cap that one tet cuts off: 5 tets in total.
+/// If no cut of a face meets the corner `far`, the three triangles around the corner are a cap that one tet cuts off,
+/// which gives 5 tets in total.
 bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles, LocalTets& local) {
   const std::uint8_t far = opposite_in_hexahedron[apex];
   std::array<Triangle, 3> cap;
@@ -82,7 +83,7 @@ bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles
   std::rotate(cap[0].begin(), std::find(cap[0].begin(), cap[0].end(), far), cap[0].end());
   const std::uint8_t p = cap[0][1], q = cap[0][2];
   const std::uint8_t r = *std::find_if(cap[1].begin(), cap[1].end(), [&](std::uint8_t c) {
-    return c != far && c != p && c != q;  // cap[1] has `far` and one of p, q in common
+    return c != far && c != p && c != q;  // cap[1] contains `far` and one of p, q
   });
   local.push_back({far, p, q, r});
   local.push_back({p, q, r, apex});
@@ -145,7 +146,7 @@ CellShape cell_shape(std::uint8_t vtk_type) {
     default:
       break;
   }
-  // The last two ranges are of VTK's parametric and first higher-order curves and surfaces.
+  // The last two ranges contain VTK's parametric and its older higher-order curves and surfaces.
   const bool flat = type <= CellType::quad || (type >= CellType::quadratic_edge && type <= CellType::quadratic_quad) ||
                     type == CellType::biquadratic_quad || type == CellType::quadratic_linear_quad ||
                     (type >= CellType::biquadratic_triangle && type <= CellType::quadratic_polygon) ||

@@ -73,7 +73,7 @@ void ClosedSurface::number_faces(std::span<const std::uint32_t> faces) {
       if (face_corners_.size() == start || face_corners_.back() != number) face_corners_.push_back(number);
     }
     while (face_corners_.size() > start + 1 && face_corners_.back() == face_corners_[start]) face_corners_.pop_back();
-    // Faces collapsed to an edge or a point are ignored.
+    // Faces that collapsed to an edge or a point are ignored.
     if (face_corners_.size() < start + 3)
       face_corners_.resize(start);
     else
@@ -104,7 +104,7 @@ bool ClosedSurface::is_balanced() const {
   return balanced;
 }
 
-/// The root of the tree that contains a face, and whether their orientations are opposite.
+/// Returns the root of the tree that contains a face, and whether the orientations of root and face are opposite.
 std::uint32_t ClosedSurface::group_of(std::uint32_t face, bool& turned) {
   std::uint32_t root = face;
   turned = false;
@@ -120,8 +120,8 @@ std::uint32_t ClosedSurface::group_of(std::uint32_t face, bool& turned) {
   return root;
 }
 
-/// Flips faces so that two faces that alone share an edge use it in opposite directions, and each connected group has a
-/// volume that is not negative. False if the surface is still not closed.
+/// Flips faces so that each pair of faces that are the only ones at an edge use the edge in opposite directions, and
+/// each connected group has a volume that is not negative. Returns false if the surface is still not closed.
 bool ClosedSurface::turn_faces() {
   parent_.resize(face_count());
   for (std::size_t f = 0; f < face_count(); ++f) parent_[f] = static_cast<std::uint32_t>(f);
@@ -146,7 +146,7 @@ bool ClosedSurface::turn_faces() {
     groups[f] = group_of(static_cast<std::uint32_t>(f), turned);
     turned_[f] = turned ? 1 : 0;
     const auto corners = face(f);
-    fan.assign(1, {0, 0, 0});  // the common origin of the cones
+    fan.assign(1, {0, 0, 0});  // common origin of the cones
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) fan.push_back({corners[0], corners[k], corners[k + 1]});
     volumes[groups[f]] += (turned ? -1 : 1) * volume6_of(fan, points_);
   }
@@ -193,7 +193,7 @@ std::optional<std::array<std::uint32_t, 8>> ClosedSurface::as_hexahedron() const
   auto distinct = corner;
   std::sort(distinct.begin(), distinct.end());
   if (ups != 4 || std::adjacent_find(distinct.begin(), distinct.end()) != distinct.end()) return std::nullopt;
-  // The other five faces must be those defined by its corners.
+  // The other five faces must be those that the corners define.
   static constexpr std::array<std::array<std::uint8_t, 4>, 5> sides = {
       {{4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
   const auto has_face = [&](const std::array<std::uint8_t, 4>& side) {

@@ -15,33 +15,34 @@ namespace tessera::cells {
 
 /// The faces of one polyhedron, cut into triangles that are oriented outward.
 ///
-/// Corners      numbered in the order of their positions; coincident ones are merged.
+/// Corners      numbered in the order of their positions; coincident corners are merged.
 /// Orientation  that of the faces if they are consistent, whether they point outward or inward; otherwise faces are
 ///              flipped to agree with their neighbours.
-/// Closed       every edge is used equally often in both directions. More than two faces may share an edge.
+/// Closed       means that every edge is used equally often in both directions. More than two faces may share an edge.
 class ClosedSurface {
  public:
-  /// `faces`: for each the number of its corners, then these, as indices into `positions`, which are finite. False if
-  /// they do not form a closed surface. Costs n log n.
+  /// Sets the polyhedron. `faces` contains, for each face, the number of its corners, then the corners as indices of
+  /// `positions`, which must be finite. Returns false if the faces do not form a closed surface. Takes n log n time.
   bool set(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
 
   [[nodiscard]] const std::vector<glm::dvec3>& points() const { return points_; }
-  /// For each corner its index in `positions`, the smallest of the coincident ones.
+  /// For each corner, its index in `positions`: the smallest index of coincident positions.
   [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return indices_; }
-  /// Without triangles that have two coincident corners.
+  /// The triangles, without those that have two coincident corners.
   [[nodiscard]] const std::vector<CornerTriangle>& triangles() const { return triangles_; }
-  /// Six times the enclosed volume; it is negative only by rounding, for flat cells.
+  /// Six times the enclosed volume. Negative only for flat cells, by rounding.
   [[nodiscard]] double volume6() const { return volume6_; }
-  /// Whether every face is a fan from its smallest corner.
+  /// Whether every face was cut into a fan from its smallest corner.
   [[nodiscard]] bool are_fans() const { return all_fans_; }
-  /// The corners in the order of a hexahedron (VTK's), if they form one and its faces are all fans.
+  /// Returns the corners in the order of VTK's hexahedron, if the polyhedron is a hexahedron and its faces are all
+  /// fans.
   [[nodiscard]] std::optional<std::array<std::uint32_t, 8>> as_hexahedron() const;
 
  private:
   struct Edge {
-    std::uint64_t corners;  ///< the smaller one first
+    std::uint64_t corners;  ///< the corner with the smaller number first
     std::uint32_t face;
-    bool forward;  ///< from the smaller to the larger
+    bool forward;  ///< the face uses the edge from the smaller to the larger corner
   };
   void number_corners(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
   void number_faces(std::span<const std::uint32_t> faces);
@@ -60,13 +61,13 @@ class ClosedSurface {
   std::vector<CornerTriangle> triangles_;
   double volume6_ = 0;
   bool all_fans_ = false;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> numbers_;  ///< per index in `positions`, in order
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> numbers_;  ///< per index in `positions`: the corner's number
   std::vector<std::uint32_t> by_place_, face_corners_;
   std::vector<std::size_t> face_starts_;
   std::vector<Edge> edges_;            ///< sorted by their corners
-  std::vector<std::uint8_t> turned_;   ///< per face, relative to its list
-  std::vector<std::uint32_t> parent_;  ///< per face, in the tree of faces that are oriented together
-  std::vector<std::uint8_t> against_;  ///< whether its orientation is opposite to its parent's
+  std::vector<std::uint8_t> turned_;   ///< per face: whether it was flipped
+  std::vector<std::uint32_t> parent_;  ///< per face: its parent in the tree of faces that are oriented together
+  std::vector<std::uint8_t> against_;  ///< per face: whether its orientation is opposite to that of its parent
   FaceCutter cutter_;
 };
 

@@ -10,7 +10,7 @@
 namespace tessera::cells {
 namespace {
 
-/// Position of a plane relative to the points: whether all others are on its inner side.
+/// How a plane divides the points. `supporting`: all other points are on its inner side.
 enum class Side { supporting, cutting, holding_all };
 
 class Hull {
@@ -38,7 +38,8 @@ class Hull {
           if (side == Side::supporting && std::none_of(found_.begin(), found_.end(), is_same))
             found_.push_back({on_, normal_});
         }
-    // Planes through close points are inaccurate, and contain fewer points of their face.
+    // Planes are sorted, because those through points that are close to each other are inaccurate and contain fewer
+    // points of their face.
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Plane& a, const Plane& b) { return a.points.size() > b.points.size(); });
     std::vector<Plane> kept;
@@ -51,7 +52,7 @@ class Hull {
   }
 
  private:
-  /// False if the three points are almost collinear.
+  /// Sets the plane through three points. Returns false if they are almost collinear.
   bool set_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     std::array<double, 3> edges = {glm::length(b - a), glm::length(c - b), glm::length(a - c)};
     std::sort(edges.begin(), edges.end());
@@ -86,7 +87,7 @@ class Hull {
     glm::dvec3 normal;
   };
 
-  /// Whether both planes are the same face: nearly parallel, with three points in common.
+  /// Whether both planes are the same face: they are nearly parallel and have three points in common.
   [[nodiscard]] bool is_part(const Plane& plane, const Plane& of) const {
     if (glm::dot(plane.normal, of.normal) < 0.999) return false;
     return std::count_if(plane.points.begin(), plane.points.end(), [&](std::uint32_t v) {
@@ -94,7 +95,8 @@ class Hull {
            }) > 2;
   }
 
-  /// The outline of the points on the plane, by Andrew's monotone chain (1979), which keeps points on its edges.
+  /// Appends the outline of the points on the plane, by Andrew's monotone chain (1979), which keeps points in the
+  /// middle of edges.
   void add_outline(const Plane& plane, std::vector<std::uint32_t>& faces) {
     const glm::dvec3 normal = plane.normal, origin = p_[plane.points[0]];
     const glm::dvec3 other = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -113,7 +115,7 @@ class Hull {
           ring_.pop_back();
         ring_.push_back(*first);
       }
-      ring_.pop_back();  // it is also the first of the other chain
+      ring_.pop_back();  // the last point is also the first of the other chain
     };
     add_chain(flat_.begin(), flat_.end());
     add_chain(flat_.rbegin(), flat_.rend());

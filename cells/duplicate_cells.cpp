@@ -36,7 +36,7 @@ struct Freed {
   void operator()(T* memory) const { std::free(memory); }
 };
 
-/// A hash of a position; -0 and 0 differ.
+/// Returns a hash of a position; those of -0 and 0 differ.
 std::uint64_t key_of_place(const glm::dvec3& p) {
   const auto word = [](double x, std::uint64_t odd, int turn) {
     return std::rotl(std::bit_cast<std::uint64_t>(x) * odd, turn);
@@ -46,7 +46,7 @@ std::uint64_t key_of_place(const glm::dvec3& p) {
   return mix((sum ^ sum >> 32) * 0xff51afd7ed558ccd);
 }
 
-/// A key for each cell that depends only on its tets' corner positions, in any order.
+/// Computes a key for each cell, which depends only on the positions of the corners of its tets, in any order.
 class CellKeys {
  public:
   explicit CellKeys(const TetMeshView& mesh)
@@ -56,8 +56,8 @@ class CellKeys {
     });
   }
 
-  /// Calls `begin()` for each range of cells, from several threads, and its result with `(first tet, tet after the
-  /// last, key)` for each cell of the range.
+  /// Calls `begin()` for each range of cells, from several threads, and then the function that it returned with `(first
+  /// tet, tet after the last, key)` for each cell of the range.
   template <class Begin>
   void each(const Begin& begin) const {
     const std::size_t tets = mesh_.tets.size();
@@ -85,8 +85,8 @@ class CellKeys {
   std::unique_ptr<std::uint64_t[]> of_vertex_;
 };
 
-/// A set of keys that stores only a slot and 32 bits of each: for 10 million different keys it reports a false match
-/// once in some hundred meshes; matches are then compared.
+/// A set of keys that stores only a slot and 32 bits of each key. For 10 million different keys, it reports a false
+/// match about once in some hundred meshes, so matches are then compared.
 class KeySet {
  public:
   explicit KeySet(std::size_t keys)
@@ -162,7 +162,7 @@ std::vector<T> sorted_lists(tbb::enumerable_thread_specific<std::vector<T>>& lis
   return all;
 }
 
-/// The tets [first, last) of a cell.
+/// A cell with the tets [first, last).
 struct KeyedCell {
   std::uint64_t key = 0;
   std::size_t first = 0, last = 0;
@@ -171,7 +171,7 @@ struct KeyedCell {
 
 using Corners = std::array<glm::dvec3, 4>;
 
-/// The tets' corners, in an order that depends only on positions.
+/// Returns the corners of the tets, in an order that depends only on positions.
 void sorted_corners(const TetMeshView& mesh, const KeyedCell& cell, std::vector<Corners>& corners) {
   corners.clear();
   for (std::size_t t = cell.first; t < cell.last; ++t) {
@@ -185,7 +185,7 @@ void sorted_corners(const TetMeshView& mesh, const KeyedCell& cell, std::vector<
   });
 }
 
-/// The keys that seem to occur several times, each once, among those of `each(begin)` as in CellKeys.
+/// Returns the keys that seem to occur several times, each once. The keys are those of `each(begin)` as in CellKeys.
 template <class Each>
 std::vector<std::uint64_t> repeated_keys(std::size_t count, const Each& each) {
   KeySet seen(count);
@@ -201,7 +201,7 @@ std::size_t cells_of(const TetMeshView& mesh) {
                                     : std::min<std::size_t>(mesh.tets.size(), mesh.original_cell.back() + 1);
 }
 
-/// Cells with the same corners as an earlier one, in order.
+/// Returns the cells with the same corners as an earlier cell, in order.
 std::vector<KeyedCell> duplicates_of(const TetMeshView& mesh) {
   const CellKeys keys(mesh);
   const std::vector<std::uint64_t> repeated =
@@ -234,7 +234,7 @@ std::vector<KeyedCell> duplicates_of(const TetMeshView& mesh) {
   return duplicates;
 }
 
-/// Removes these cells' tets and their attributes.
+/// Removes the tets of these cells and the attributes of the tets.
 void remove(const std::vector<KeyedCell>& cells, TetMesh& mesh) {
   if (mesh.original_cell.empty()) {
     mesh.original_cell.resize(mesh.tets.size());

@@ -8,10 +8,10 @@
 namespace tessera::cells {
 namespace {
 
-// Relative to a face's area: how far rounding may invert triangles, or move corners out of an ear.
+// How far rounding may invert triangles, or move corners out of an ear, relative to the area of the face.
 constexpr double turned_by_rounding = 1e-9, outside_by_rounding = 1e-12;
 
-/// Rotates a ring to its smallest rotation. A corner may occur in it several times.
+/// Rotates a ring to its lexicographically smallest rotation. The same corner may occur several times in a ring.
 void start_at_least(std::vector<std::uint32_t>& ring) {
   const std::size_t n = ring.size();
   std::size_t i = 0, j = 1, same = 0;
@@ -89,7 +89,7 @@ void FaceCutter::cut_ears(std::span<const glm::dvec3> p) {
   while (ring_.size() > 3) {
     std::size_t best = 0;
     for (std::size_t k = 1; k < ears_.size(); ++k) {
-      // If there is no ear, as in faces that intersect themselves: the corner with the largest turn.
+      // If there is no ear, as in faces that intersect themselves, the corner with the largest turn is cut off.
       const bool better =
           ears_[k].cut != ears_[best].cut
               ? ears_[k].cut < ears_[best].cut

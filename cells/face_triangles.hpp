@@ -11,27 +11,29 @@ namespace tessera::cells {
 
 using CornerTriangle = std::array<std::uint32_t, 3>;
 
-/// Cuts polygonal faces into triangles that depend only on the positions of the corners, not on the first corner of the
-/// list or its direction, so that both cells of a face get the same triangles.
+/// Cuts polygonal faces into triangles that depend only on the positions of the corners, not on which corner is listed
+/// first or on the direction of the list, so that both cells of a face get the same triangles.
 ///
-/// Convex       planar or warped: the fan from the lexicographically smallest corner, like the faces in cell_split.hpp.
-///              The same applies to other faces that are completely visible from there.
-/// Not convex   ears are cut off, the one with the shortest cut first, as seen along the face's area vector.
-/// Degenerate   collinear corners are kept, if necessary in triangles without an area, so that no edge is lost.
-/// Cost         quadratic in the corners if ears are cut; faces of more than `most_ears` corners are fans whatever
-///              their shape.
+/// Convex       faces, planar or warped, become the fan from the lexicographically smallest corner, like the faces in
+///              cell_split.hpp. The same applies to other faces that are completely visible from that corner.
+/// Not convex   Ears are cut off, the one with the shortest cut first, as seen along the face's area vector.
+/// Degenerate   Collinear corners are kept, if necessary in triangles without an area, so that no edge is lost.
+/// Cost         is quadratic in the number of corners if ears are cut. Faces of more than `most_ears` corners become
+/// fans
+///              whatever their shape.
 class FaceCutter {
  public:
   static constexpr std::size_t most_ears = 512;
 
-  /// Appends the triangles of a face, with its orientation. Corners are numbers in the order of their positions `p`; no
-  /// two consecutive ones are equal. Returns whether the triangles are a fan from the smallest corner.
+  /// Appends the triangles of a face, with the orientation of the face. Corners are numbered in the order of their
+  /// positions `p`; no two consecutive corners are equal. Returns whether the triangles are a fan from the smallest
+  /// corner.
   bool cut(std::span<const std::uint32_t> corners, std::span<const glm::dvec3> p,
            std::vector<CornerTriangle>& triangles);
 
  private:
   struct Ear {
-    double cut = 0;  ///< squared length of the edge that cuts it off; infinity if it must not be cut
+    double cut = 0;  ///< squared length of the edge that cuts the corner off; infinity if it must not be cut off
     double turn = 0;
   };
   [[nodiscard]] Ear ear_at(std::size_t k, std::span<const glm::dvec3> p) const;
@@ -39,7 +41,7 @@ class FaceCutter {
   void cut_ears(std::span<const glm::dvec3> p);
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  std::vector<std::uint32_t> ring_, reversed_;  ///< the corners from the smallest on, its smaller neighbour next
+  std::vector<std::uint32_t> ring_, reversed_;  ///< the corners from the smallest on, then its smaller neighbour
   std::vector<Ear> ears_;
   bool backwards_ = false;  ///< `ring_` has the opposite direction to the given list
   glm::dvec3 area_{0};      ///< twice the area vector of `ring_`

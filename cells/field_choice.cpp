@@ -25,17 +25,17 @@ const char* word(Association a) { return a == Association::point ? "point" : "ce
 
 bool is_floating(const FieldSummary& f) { return f.type == "float" || f.type == "double"; }
 
-/// For floats only if they start at 0 or 1: pressures may well be 300 to 307.
+/// Whether the values number cells or points. Floats must start at 0 or 1, because pressures may well be 300 to 307.
 bool counts_up(const NumberTally& numbers, const FieldSummary& f) {
   return f.components == 1 && (!is_floating(f) || numbers.low == 0 || numbers.low == 1) && numbers.counts_up();
 }
 
 void include_numbers(const BlockField& field, FieldTally& tally) {
-  constexpr std::uint64_t least_of_block = 16;  // a single cell per block counts up whatever its value
+  constexpr std::uint64_t least_of_block = 16;  // a block with a single cell counts up whatever the value
   NumberTally numbers;
   if (field.tally) {
     numbers = *field.tally;
-    // Some readers tally only the smallest and largest value.
+    // Some readers tally only the smallest and the largest value, so the others may not be integers.
     numbers.whole = numbers.whole && numbers.finite + numbers.not_finite == field.tuples;
   } else {
     std::array<double, 4096> chunk;
@@ -53,7 +53,7 @@ void include_numbers(const BlockField& field, FieldTally& tally) {
 }
 
 bool varies(const FieldSummary& f) {
-  // A constant stays a constant after float arithmetic.
+  // Differences from rounding in float arithmetic do not count: the field is still a constant.
   return f.high - f.low > 1e-6 * std::max(std::abs(f.low), std::abs(f.high));
 }
 
@@ -88,7 +88,7 @@ const FieldSummary* find(std::span<const FieldSummary> fields, const std::string
   return nullptr;
 }
 
-/// The component named after the colon, for any array; -2 if it is not one.
+/// Returns the component that the text after the colon names, for any array; -2 if it does not name one.
 int parse_component(const std::string& text) {
   if (text == "mag" || text == "magnitude") return magnitude;
   if (text == "x" || text == "y" || text == "z") return text[0] - 'x';
@@ -96,7 +96,7 @@ int parse_component(const std::string& text) {
   return n >= 0 ? n : -2;
 }
 
-/// "NAME" or "NAME:component" among arrays of one association, or of both.
+/// Resolves "NAME" or "NAME:component" among the arrays of one association, or of both.
 std::optional<FieldChoice> resolve(const std::string& requested, std::optional<Association> association,
                                    std::span<const FieldSummary> fields, const std::string& source) {
   if (const FieldSummary* field = find(fields, requested, association)) return choice_of(*field, std::nullopt);
@@ -114,14 +114,14 @@ std::optional<FieldChoice> resolve(const std::string& requested, std::optional<A
   return choice_of(*field, component);
 }
 
-/// Labels that number cells and points, parts and materials: the last choice.
+/// Whether a name is that of labels that number cells, points, parts or materials, which are the last choice.
 bool is_id_name(const std::string& name) {
   const std::string lower = lower_case(name);
   static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
                                        "part", "blockid", "region", "material", "material #", "materialid", "block"};
   if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
-  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid"; or two words, as
-  // in "NodeNumber", but not in "Mach number".
+  // The name is a label if one of these is a word of it, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in
+  // "Fluid" or "Solid"; or if it contains two words, as in "NodeNumber", but not in "Mach number".
   constexpr std::array<std::string_view, 4> ids = {"id", "ids", "gid", "gids"};
   constexpr std::array<std::string_view, 7> counted = {"node", "element", "elem", "cell", "point", "vertex", "face"};
   constexpr std::array<std::string_view, 6> numbers = {"number", "numbers", "num", "no", "nr", "index"};
@@ -143,7 +143,7 @@ bool is_id_name(const std::string& name) {
 
 bool is_id(const FieldSummary& f) { return f.ids || (!f.fractions && is_id_name(f.name)); }
 
-/// With so few values, 0, 1, 2 ... may be a test's quantity if nothing else varies.
+/// With so few values, 0, 1, 2 ... may be a quantity of a test if nothing else varies.
 bool may_count_by_chance(const FieldSummary& f) {
   return f.ids && is_floating(f) && f.high - f.low < 64 && !is_label_name(f.name);
 }
@@ -153,7 +153,7 @@ const FieldSummary* first_of(std::span<const FieldSummary> fields, const auto& w
   return f == fields.end() ? nullptr : &*f;
 }
 
-/// The first field that varies and is accepted.
+/// Returns the first field that varies and that `may_be` accepts.
 const FieldSummary* first_quantity(std::span<const FieldSummary> fields, const auto& may_be) {
   const auto quantity = [&](const FieldSummary& f) { return varies(f) && may_be(f); };
   for (const Association a : {Association::point, Association::cell})
@@ -270,7 +270,7 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
 }
 
 bool looks_like_noise(const FieldSummary& field) {
-  const double low = field.components == 1 ? field.low : -field.high;  // for vectors, the range of the length
+  const double low = field.components == 1 ? field.low : -field.high;  // for vectors, the range is that of the length
   return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
 }
 
@@ -321,7 +321,7 @@ bool is_label_name(const std::string& name) {
 
 namespace {
 
-/// "did you mean 'NAME'? ", or empty.
+/// Returns "did you mean 'NAME'? ", or an empty text.
 std::string meant_field(const std::string& requested, std::span<const FieldSummary> fields) {
   std::vector<std::string> names;
   for (const FieldSummary& field : fields) names.push_back(field.name);

@@ -95,7 +95,8 @@ class Assembly {
                       source_, points));
   }
 
-  /// Reads scalars of the block's points (appended to the previous ones) or cells; NaN if the block lacks the field.
+  /// Reads the scalars of the block's points (appending them to those of previous blocks) or of its cells. They are NaN
+  /// if the block lacks the field.
   void read_values(const CellBlock& block) {
     const bool point = choice_.association == Association::point;
     const std::size_t n = point ? points_.size() : block.cell_count();
@@ -130,7 +131,7 @@ class Assembly {
     }
     const auto values = std::span(values_).subspan(first, n);
     field->read(choice_.component, 0, values);
-    // Subnormal numbers are too coarse to interpolate between.
+    // Subnormal numbers are too coarse for interpolation and become 0.
     for (double& value : values)
       if (std::abs(value) < std::numeric_limits<double>::min()) value = 0;
   }
@@ -148,7 +149,7 @@ class Assembly {
     const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     std::vector<BlockTets> results(in_flight);
     std::size_t next = 0;
-    // A result is reused after all others have begun since: by then it has been appended.
+    // A result is reused only after all other results have been begun; by then it has been appended.
     const auto begin = [&](tbb::flow_control& flow) {
       if (next * cells_a_task >= count) flow.stop();
       return next++;
@@ -159,7 +160,7 @@ class Assembly {
         const std::size_t first = task * cells_a_task;
         cells.split(first, std::min(count, first + cells_a_task), tets);
       } catch (...) {
-        tets.error = std::current_exception();  // the first cell's error is reported, whichever thread was faster
+        tets.error = std::current_exception();  // the first cell's error is reported, whatever the timing
       }
       return task;
     };
@@ -191,7 +192,8 @@ class Assembly {
     added_values_.insert(added_values_.end(), made.added_values.begin(), made.added_values.end());
   }
 
-  /// Appends the points at which the block's cells were split to its own, which threads have read until now.
+  /// Appends the points at which the block's cells were split to the block's own points, which threads have read until
+  /// now.
   void take_added_points() {
     result_.mesh.positions.insert(result_.mesh.positions.end(), added_points_.begin(), added_points_.end());
     if (choice_.association == Association::point)
@@ -234,7 +236,7 @@ class Assembly {
     return static_cast<std::uint32_t>(result_.mesh.positions.size() - points_.size());
   }
 
-  /// From here on, tet and cell numbers differ.
+  /// Starts to store the cell number of each tet, because tet and cell numbers differ from here on.
   void number_cells() {
     result_.mesh.original_cell.reserve(result_.mesh.tets.capacity());
     result_.mesh.original_cell.resize(result_.mesh.tets.size());
@@ -242,7 +244,7 @@ class Assembly {
     numbered_ = true;
   }
 
-  /// Number of points that no tet uses.
+  /// Returns the number of points that no tet uses.
   std::uint64_t unused_points() {
     std::vector<std::uint8_t> is_used(result_.mesh.positions.size());
     constexpr std::size_t grain = 65536;
@@ -269,7 +271,7 @@ class Assembly {
   std::vector<double> values_;            ///< of all points so far, or of the block's cells
   std::vector<glm::dvec3> added_points_;  ///< of the current block
   std::vector<double> added_values_;
-  std::vector<std::uint32_t> higher_order_nodes_;  ///< of all divided cells
+  std::vector<std::uint32_t> higher_order_nodes_;  ///< nodes of all cells that were divided
   bool numbered_ = false;
 };
 

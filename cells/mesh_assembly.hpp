@@ -20,11 +20,11 @@ struct AssembledBlocks {
   MeshCounts counts;
   HigherOrderCells higher_order;
   std::vector<std::string> notes;
-  std::vector<std::uint64_t> cell_keys;  ///< duplicate_keys(), for Duplicates::keys
+  std::vector<std::uint64_t> cell_keys;  ///< duplicate_keys() of the mesh, if Duplicates::keys was requested
 };
 
-/// Treatment of cells with the same corners as earlier ones. For a part of a mesh the keys are kept, because other
-/// parts may have the same cells.
+/// What to do with cells that have the same corners as earlier cells. For a part of a mesh `keys` is used, because
+/// other parts may have the same cells.
 enum class Duplicates : std::uint8_t { count, drop, keys };
 
 /// Drops ghost, hidden and NaN cells and splits the rest into tets with the chosen field. Blocks are emptied as they
@@ -35,25 +35,27 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
                                 Duplicates duplicates = Duplicates::count);
 
-/// Notes on the treatment of the cells of a whole file. Throws Error(bad_input) if nothing remains to render.
+/// Returns notes about how the cells of a whole file were treated. Throws Error(bad_input) if nothing remains to
+/// render.
 std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order,
                                         const std::string& source);
 
-/// Differences between the drawn cells and the file's, one line each.
+/// Returns the differences between the cells that are drawn and those of the file, one line each.
 std::vector<std::string> warnings_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order);
 
-/// Determines how higher-order cells are divided: plan_higher_order(), or the agreement of the parts of a mesh.
+/// A function that determines how higher-order cells are divided: plan_higher_order(), or one that agrees with the
+/// other parts of a mesh.
 using HigherOrderPlanning =
     std::function<HigherOrderPlan(std::span<const CellBlock> blocks, const ReadOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields)>;
 
-/// Creates the tet mesh of all of a file's blocks: chooses the field, assembles, and smooths if requested. `format` is
-/// left empty. Throws like the functions above and choose_field.
+/// Creates the tet mesh of all blocks of a file: chooses the field, assembles the blocks, and smooths the field if
+/// requested. `format` is left empty. Throws like assemble_blocks(), notes_on_cells() and choose_field().
 MeshFile assemble_mesh(std::vector<CellBlock> blocks, const ReadOptions& options, const std::string& source,
                        const HigherOrderPlanning& planning = plan_higher_order);
 
 /// Replaces cell data by point data: each used vertex gets the mean of the adjacent cells, weighted by tet volume
-/// (unweighted if all volumes are 0). Coincident vertices count as one, so that pieces have no seam.
+/// (unweighted if all volumes are 0). Coincident vertices count as one vertex, so that there is no seam between pieces.
 void smooth_to_points(scene::TetMesh& mesh);
 
 }  // namespace tessera::cells

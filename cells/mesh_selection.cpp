@@ -28,10 +28,10 @@ using scene::Tet;
 
 bool comes_first(const glm::dvec3& p, const glm::dvec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
 
-/// Some of a mesh's tets, or the tets into which they were cut.
+/// Some of a mesh's tets, possibly cut into smaller tets.
 struct KeptTets {
   std::vector<Tet> tets;
-  std::vector<double> scalars;  ///< for cell data
+  std::vector<double> scalars;  ///< values of the tets, for cell data
   std::vector<std::uint64_t> cells;
 
   void add(const Tet& tet, const scene::TetMesh& mesh, std::size_t of) {
@@ -46,7 +46,7 @@ struct KeptTets {
   }
 };
 
-/// Number of cells that have tets; the tets of one are consecutive.
+/// Returns the number of cells that have tets; the tets of a cell are consecutive.
 std::uint64_t cells_with_tets(const scene::TetMesh& mesh) {
   std::uint64_t cells = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -71,7 +71,7 @@ void apply_threshold(scene::TetMesh& mesh, const std::array<double, 2>& range) {
   kept.move_to(mesh);
 }
 
-/// Cuts a mesh by a half-space and keeps the part inside.
+/// Cuts a mesh by a half-space and keeps the part inside the half-space.
 class HalfSpaceCut {
  public:
   HalfSpaceCut(scene::TetMesh& mesh, const scene::HalfSpace& kept, std::span<const double> levels,
@@ -96,11 +96,11 @@ class HalfSpaceCut {
     }
   }
 
-  /// Cuts the mesh; appends each cell that loses a part, once.
+  /// Cuts the mesh. Appends each cell that loses a part, once.
   void apply(std::vector<std::uint64_t>& changed) {
     KeptTets kept;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      std::array<int, 3> count{};  // number of corners outside, on the plane and inside
+      std::array<int, 3> count{};  // number of corners outside, on and inside the plane
       for (const std::uint32_t v : mesh_.tets[t]) ++count[static_cast<std::size_t>(sides_[v] + 1)];
       if (count[0] == 0 && count[2] > 0) {
         kept.add(mesh_.tets[t], mesh_, t);
@@ -119,7 +119,7 @@ class HalfSpaceCut {
  private:
   [[nodiscard]] double distance(const glm::dvec3& p) const { return glm::dot(normal_, p - point_); }
 
-  /// The level that a scalar equals up to rounding, for scalars of this size.
+  /// Returns the level that a scalar equals up to rounding, for scalars of this size.
   [[nodiscard]] double at_level(double scalar, double size) const {
     constexpr double rounding = 1e-12;  // some thousand units in the last place of the coordinates
     for (const double level : levels_)
@@ -127,8 +127,8 @@ class HalfSpaceCut {
     return scalar;
   }
 
-  /// -1 outside, 1 inside, 0 on the plane: within the rounding of the distance, which depends only on the corner, so
-  /// that all tets that share it agree.
+  /// Returns -1 for a corner outside, 1 inside, and 0 on the plane, within the rounding of the distance. That depends
+  /// only on the corner, so that all tets that share the corner agree.
   [[nodiscard]] std::int8_t side_of(const glm::dvec3& p) const {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const double d = distance(p);
@@ -136,9 +136,9 @@ class HalfSpaceCut {
     return d < 0 ? -1 : 1;
   }
 
-  /// Splits the part inside of a tet that has corners inside into tets.
+  /// Splits the part of a tet inside the half-space into tets, if the tet has corners inside.
   void split(const Tet& tet, const std::array<int, 3>& count) {
-    std::array<std::uint32_t, 4> order = tet;  // sorted: inside, on the plane, outside
+    std::array<std::uint32_t, 4> order = tet;  // corners sorted: inside, on the plane, outside
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return sides_[a] > sides_[b]; });
     const auto [p, q, r, s] = order;
@@ -160,12 +160,12 @@ class HalfSpaceCut {
     split_cell(kind, corner, mesh_.positions, pieces_);
   }
 
-  /// The intersection of the plane with the edge from a corner inside to another.
+  /// Returns the intersection of the plane with the edge from a corner inside to another corner.
   std::uint32_t at_plane(std::uint32_t inside, std::uint32_t other) {
     return sides_[other] == 0 ? other : cut(inside, other);
   }
 
-  /// The new vertex on an edge that the plane cuts.
+  /// Returns the new vertex on an edge that the plane cuts.
   std::uint32_t cut(std::uint32_t a, std::uint32_t b) {
     if (comes_first(mesh_.positions[b], mesh_.positions[a])) std::swap(a, b);
     const std::uint64_t edge = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
@@ -191,7 +191,7 @@ class HalfSpaceCut {
     return vertex;
   }
 
-  /// A cut next to a corner may coincide with the corner up to rounding.
+  /// Whether a tet is not flat: a cut next to a corner may coincide with the corner up to rounding.
   [[nodiscard]] bool has_extent(const Tet& tet) const {
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < i; ++j)
@@ -227,7 +227,7 @@ void drop_unused(scene::TetMesh& mesh) {
     for (std::uint32_t& v : tet) v = number[v];
 }
 
-/// The number of changed cells that still have tets.
+/// Returns how many of the changed cells still have tets.
 std::uint64_t cells_left_of(std::vector<std::uint64_t> changed, const scene::TetMesh& mesh) {
   std::sort(changed.begin(), changed.end());
   std::uint64_t left = 0;

@@ -9,11 +9,11 @@
 
 namespace tessera::cells {
 
-/// Reduces a mesh to the selection (tessera/selection.hpp): threshold, then one half-space after the other. Tets stay
-/// in order, those of one cell next to each other; unused vertices are dropped. Sets cells_out_of_range, cells_clipped,
-/// cells_cut and the new number of tets in `counts`. The mesh may be part of another: the result for a tet depends only
-/// on its corners' positions and values. Throws Error(bad_input) for a mesh that would have 2^32 vertices, and like
-/// validate().
+/// Reduces a mesh to the selection (tessera/selection.hpp): first by the threshold, then by each half-space. Tets keep
+/// their order, and those of one cell remain consecutive; unused vertices are dropped. Sets cells_out_of_range,
+/// cells_clipped, cells_cut and the new number of tets in `counts`. The mesh may be a part of another mesh, because the
+/// result for a tet depends only on the positions and values of its corners. Throws Error(bad_input) for a mesh that
+/// would have 2^32 vertices, and like validate().
 void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts& counts, const std::string& source);
 
 /// Throws Error(bad_input) if the selection of a whole mesh is empty.

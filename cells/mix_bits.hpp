@@ -5,7 +5,7 @@
 
 namespace tessera::cells {
 
-/// Spreads the bits of a key for a hash table: the finalizer of MurmurHash3 (Appleby, 2011, public domain).
+/// Mixes the bits of a key for a hash table, using the finalizer of MurmurHash3 (Appleby, 2011, public domain).
 constexpr std::uint64_t mix(std::uint64_t h) {
   h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
   h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;

@@ -8,8 +8,8 @@
 
 namespace tessera::cells {
 
-/// The bits of a number, mixed (the finalizer of MurmurHash3 after a golden-ratio step; Steele, Lea, Flood, "Fast
-/// Splittable Pseudorandom Number Generators", 2014).
+/// Returns the mixed bits of a number: the finalizer of MurmurHash3 after a golden-ratio step (Steele, Lea, Flood,
+/// "Fast Splittable Pseudorandom Number Generators", 2014).
 inline std::uint64_t mixed_bits(std::int64_t number) {
   std::uint64_t bits = static_cast<std::uint64_t>(number) + 0x9e3779b97f4a7c15u;
   bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9u;
@@ -17,14 +17,14 @@ inline std::uint64_t mixed_bits(std::int64_t number) {
   return bits ^ bits >> 31;
 }
 
-/// Range of an array's finite values; for vectors, of their lengths.
+/// Summary of an array's values, mainly their finite range; for vectors, that of their lengths.
 struct NumberTally {
   double low = 0, high = 0;
   std::uint64_t not_finite = 0;
-  bool any_finite = false;        ///< otherwise low and high are meaningless
+  bool any_finite = false;        ///< if false, low and high are meaningless
   bool whole = true;              ///< all finite values are integers below 2^53
   std::uint64_t finite = 0;       ///< number of finite values
-  std::uint64_t fingerprint = 0;  ///< sum of mixed_bits(), while whole: independent of the order of the numbers
+  std::uint64_t fingerprint = 0;  ///< sum of mixed_bits(), while `whole`; independent of the numbers' order
 
   void add(std::span<const double> values) {
     for (const double value : values) {
@@ -54,8 +54,8 @@ struct NumberTally {
     fingerprint += more.fingerprint;
   }
 
-  /// Whether the values are low, low + 1, ... high, each once, in any order. Always false for fewer than four values;
-  /// wrong for others with probability 2^-64.
+  /// Whether the values are low, low + 1, ... high, each once, in any order. Always false for fewer than four values.
+  /// For others, a result of true is wrong with probability 2^-64.
   [[nodiscard]] bool counts_up() const {
     if (!whole || finite < 4 || not_finite > 0 || high - low != static_cast<double>(finite - 1)) return false;
     std::uint64_t expected = 0;

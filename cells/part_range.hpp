@@ -6,7 +6,7 @@
 
 namespace tessera::cells {
 
-/// The first item of part `part` if n items are divided over the parts; for part == parts: n.
+/// Returns the first item of part `part` if n items are divided over the parts; n for part == parts.
 inline std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
   const auto p = static_cast<std::uint64_t>(part), count = static_cast<std::uint64_t>(parts);
   return n / count * p + std::min(p, n % count);

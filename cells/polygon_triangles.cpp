@@ -17,7 +17,7 @@ void PolygonTriangles::cut(std::span<const std::uint32_t> polygon, std::span<con
     triangles.push_back({ring_[0], ring_[1], ring_[2]});
     return;
   }
-  // The corners' numbers in the order of their positions.
+  // Returns the number of a corner in the order of positions.
   const auto place = [&](std::uint32_t v) {
     const glm::dvec3& p = points[v];
     return std::tuple(p.x, p.y, p.z);

@@ -15,7 +15,7 @@ namespace tessera::cells {
 /// (face_triangles.hpp).
 class PolygonTriangles {
  public:
-  /// Appends a polygon's triangles; nothing if its corners have fewer than three distinct positions.
+  /// Appends the triangles of a polygon; nothing if its corners have fewer than three distinct positions.
   void cut(std::span<const std::uint32_t> polygon, std::span<const glm::dvec3> points,
            std::vector<std::array<std::uint32_t, 3>>& triangles);
 

@@ -24,7 +24,7 @@ std::optional<SurfaceFill> PolyhedronSplitter::split_hull(std::span<const std::u
   if (points.empty()) return SurfaceFill::from_corner;
   glm::dvec3 low = positions[points[0]], high = low;
   for (const std::uint32_t v : points) low = glm::min(low, positions[v]), high = glm::max(high, positions[v]);
-  // Faces are planar up to the rounding of their corners, possibly of floats; thin cells need a smaller tolerance.
+  // Faces are planar up to the rounding of their corners, which may be floats; thin cells need a smaller tolerance.
   for (const double thickness : {1e-6, 1e-9, 1e-12})
     if (hull_faces(points, positions, thickness * glm::length(high - low), hull_) && surface_.set(hull_, positions))
       return fill(positions);
@@ -44,7 +44,7 @@ SurfaceFill PolyhedronSplitter::fill(std::span<const glm::dvec3> positions) {
   return way;
 }
 
-/// A polyhedron that is a hexahedron gives the same tets as the cell type, five if possible.
+/// Fills a polyhedron that is a hexahedron with the same tets as the cell type hexahedron, five if possible.
 bool PolyhedronSplitter::fill_hexahedron() {
   const auto corner = surface_.as_hexahedron();
   if (!corner) return false;

@@ -12,7 +12,7 @@
 namespace tessera::cells {
 namespace {
 
-/// For each used vertex, the first used vertex at the same position. Open addressing, linear probing.
+/// Returns, for each used vertex, the first used vertex at the same position. Open addressing, linear probing.
 std::vector<std::uint32_t> first_at_same_position(const scene::TetMesh& mesh) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   const std::size_t slots = std::bit_ceil(2 * mesh.positions.size() + 1);

@@ -8,11 +8,11 @@
 
 namespace tessera::cells {
 
-/// A polygon of a surface, as point indices.
+/// A polygon of a surface, as indices of points.
 using Polygon = std::vector<std::uint32_t>;
 
-/// A planar piece of a surface: usually one polygon; .poly files may add inner boundaries, lines and points in the
-/// plane.
+/// A planar piece of a surface: usually one polygon. In .poly files it may also have inner boundaries, lines and points
+/// in the plane.
 struct Facet {
   std::vector<Polygon> polygons;
   std::vector<glm::dvec3> holes;  ///< a point in each hole of the facet
@@ -27,18 +27,19 @@ struct Surface {
   std::vector<std::vector<double>> attributes;
 };
 
-/// Merges coincident points and drops polygons that collapse. STL files cannot share points otherwise.
+/// Merges coincident points and drops polygons that collapse. Needed for STL files, whose polygons cannot share points.
 void merge_coincident_points(Surface& surface);
 
-/// Cuts single-polygon facets that are not flat into triangles, like faces of polyhedra: TetGen requires planar facets.
+/// Cuts facets that consist of a single polygon and are not flat into triangles, like faces of polyhedra, because
+/// TetGen requires planar facets.
 void cut_warped_facets(Surface& surface);
 
-/// Throws Error(bad_input) naming an edge that belongs to only one polygon. Checks nothing if a facet has several
-/// polygons; TetGen then decides.
+/// Throws Error(bad_input) naming an edge that belongs to only one polygon. Does not check surfaces with facets of
+/// several polygons; TetGen then detects open surfaces.
 void require_closed(const Surface& surface, const std::string& source);
 
-/// Enclosed volume, as the sum of the polygons' signed cones; correct if all polygons have the same orientation, else
-/// too small.
+/// Returns the enclosed volume, as the sum of the polygons' signed cones. It is correct if all polygons have the same
+/// orientation, otherwise too small.
 double enclosed_volume(const Surface& surface);
 
 }  // namespace tessera::cells

@@ -11,7 +11,8 @@ namespace {
 
 using Tet = std::array<std::uint32_t, 4>;
 
-// Limit of comparisons of ears with corners, edges and triangles of one surface in all attempts: some 20 ms.
+// Largest number of comparisons of ears with corners, edges and triangles of one surface in all attempts, which takes
+// about 20 ms.
 constexpr std::size_t most_work = 6'000'000;
 
 std::uint64_t edge_of(std::uint64_t a, std::uint64_t b) { return a < b ? a << 32 | b : b << 32 | a; }
@@ -31,7 +32,7 @@ bool holds(const std::array<glm::dvec3, 4>& t, const glm::dvec3& x) {
   return true;
 }
 
-/// Whether the segment crosses or touches the triangle, unless it is in its plane.
+/// Whether the segment crosses or touches the triangle. False if the segment is in the plane of the triangle.
 bool crosses(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& a, const glm::dvec3& b,
              const glm::dvec3& c) {
   const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -109,7 +110,7 @@ bool SurfaceEars::cut(Tet& tet) {
   return false;
 }
 
-/// Lists the current edges and, for convex ones, the ears, sorted with the best first.
+/// Lists the current edges and, for convex edges, the ears, with the best ears first.
 void SurfaceEars::list() {
   edges_.clear(), ears_.clear(), corners_.clear();
   for (const CornerTriangle& t : triangles_) corners_.insert(corners_.end(), t.begin(), t.end());
@@ -149,7 +150,7 @@ void SurfaceEars::list() {
             [](const Ear& a, const Ear& b) { return a.rank != b.rank ? a.rank > b.rank : a.corner < b.corner; });
 }
 
-/// Priority of an ear. Ears that remove a corner leave fewer triangles.
+/// Returns the priority of an ear. Ears that remove a corner have a higher one, because they leave fewer triangles.
 double SurfaceEars::rank_of(double quality, double edges, bool ends_a_corner) {
   const double more = ends_a_corner ? 1 : 0;
   switch (attempt_) {
@@ -171,7 +172,7 @@ bool SurfaceEars::has_edge(std::uint32_t a, std::uint32_t b) const {
   return at != edges_.end() && at->corners == corners;
 }
 
-/// The index of a triangle with the same orientation, or -1.
+/// Returns the index of a triangle with the same orientation, or -1.
 std::ptrdiff_t SurfaceEars::find(const CornerTriangle& wanted) const {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const CornerTriangle& x = triangles_[t];
@@ -182,7 +183,7 @@ std::ptrdiff_t SurfaceEars::find(const CornerTriangle& wanted) const {
   return -1;
 }
 
-/// Whether nothing of the surface is inside the ear, or on its new faces.
+/// Whether no part of the surface is inside the ear, or on its new faces.
 bool SurfaceEars::is_free(const Ear& ear) {
   const auto [a, b, c, d] = ear.corner;
   const std::size_t work = corners_.size() + edges_.size() + triangles_.size();
@@ -192,7 +193,7 @@ bool SurfaceEars::is_free(const Ear& ear) {
   const bool is_old_edge = has_edge(c, d);
   for (std::size_t side = 0; side < 2 && is_old_edge; ++side) {
     is_there[side] = find(sides[side]) >= 0;
-    // It would coincide with a triangle of the surface.
+    // The new face would coincide with a triangle of the surface.
     if (find({sides[side][0], sides[side][2], sides[side][1]}) >= 0) return false;
   }
   if (is_old_edge && !is_there[0] && !is_there[1]) return false;
@@ -225,7 +226,8 @@ bool SurfaceEars::is_free(const Ear& ear) {
   return true;
 }
 
-/// Each of the ear's four faces is removed if the surface has it; otherwise its other side is added to the surface.
+/// Removes each of the ear's four faces that the surface contains, and adds the other side of the remaining faces to
+/// the surface.
 void SurfaceEars::take_off(const Ear& ear) {
   const auto [a, b, c, d] = ear.corner;
   for (const CornerTriangle& face : {CornerTriangle{a, b, c}, {b, a, d}, {a, c, d}, {c, b, d}}) {

@@ -13,23 +13,25 @@
 
 namespace tessera::cells {
 
-/// The triangles, grouped into parts connected by edges that exactly two triangles share.
+/// Groups the triangles into parts. Triangles are in the same part if edges that exactly two triangles share connect
+/// them.
 std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTriangle> triangles);
 
-/// Cuts tets off a closed surface one by one, like ears of a polygon: each is inside, has at least two triangles of the
-/// surface, and contains nothing else of it.
+/// Cuts tets off a closed surface one by one, like ears of a polygon: each tet is inside the surface, has at least two
+/// triangles of the surface, and does not contain any other part of the surface.
 ///
-/// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end with a surface that
-///          has none. The total work on one surface over all attempts is bounded; after that no more ears are found.
+/// Limits   Not every surface has an ear (Schoenhardt's polyhedron does not), and cutting may lead to a surface without
+///          ears. The total work on one surface over all attempts is bounded; after that no more ears are found.
 class SurfaceEars {
  public:
   static constexpr std::size_t most_triangles = 200;
 
-  /// `triangles` are oriented outward, with corners `p`, which outlives this. Each `attempt` uses another order of
-  /// ears; 0 takes those of the best shape first. False if there are more than `most_triangles`.
+  /// Sets the surface. `triangles` are oriented outward, with corners `p`, which must outlive this object. Each number
+  /// `attempt` selects another order of ears; 0 selects ears of the best shape first. Returns false if there are more
+  /// than `most_triangles` triangles.
   bool set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles, std::uint32_t attempt);
 
-  /// Cuts off the first ear. False if there is none.
+  /// Cuts off the first ear. Returns false if there is none.
   bool cut(std::array<std::uint32_t, 4>& tet);
 
   /// The remaining triangles, oriented outward.
@@ -37,11 +39,11 @@ class SurfaceEars {
 
  private:
   struct Edge {
-    std::uint64_t corners;  ///< the smaller one first
+    std::uint64_t corners;  ///< the corner with the smaller number first
     std::uint32_t triangle;
   };
   struct Ear {
-    std::array<std::uint32_t, 4> corner;  ///< triangles 0 1 2 and 1 0 3 are the surface's
+    std::array<std::uint32_t, 4> corner;  ///< triangles 0 1 2 and 1 0 3 belong to the surface
     double rank;
   };
   void list();

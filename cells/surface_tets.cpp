@@ -10,23 +10,23 @@
 namespace tessera::cells {
 namespace {
 
-// Fraction of a cell's volume that tets may have on the wrong side by rounding (block_tets.cpp counts larger ones as
-// tangled).
+// Fraction of a cell's volume that rounding may put on the wrong side. Cells with a larger fraction are counted as
+// tangled (block_tets.cpp).
 constexpr double by_rounding = 1e-10;
-// Limit of triangles times apexes tried.
+// Largest number of triangles times the number of apexes tried.
 constexpr std::size_t most_tries = 4'000'000;
-// Number of different orders in which ears are cut.
+// Largest number of different orders in which ears are cut.
 constexpr std::uint32_t most_attempts = 12;
 
-/// Six times the volume of the tet between a triangle that is oriented outward and a point, positive if the point is
-/// inside.
+/// Returns six times the volume of the tet between a triangle that is oriented outward and a point; positive if the
+/// point is inside.
 double depth6(const CornerTriangle& t, const glm::dvec3& apex, std::span<const glm::dvec3> p) {
   return glm::dot(glm::cross(p[t[0]] - apex, p[t[1]] - apex), p[t[2]] - apex);
 }
 
 bool has(const CornerTriangle& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
 
-/// Solves m x = b for a symmetric matrix; if it is singular, x has no component in its null space.
+/// Solves m x = b for a symmetric matrix; if the matrix is singular, x has no component in its null space.
 glm::dvec3 solve(std::array<std::array<double, 3>, 3> m, glm::dvec3 b) {
   std::array<int, 3> order{0, 1, 2};
   double largest = 0;
@@ -111,7 +111,8 @@ void SurfaceTets::take_measures(const Triangles& part) {
   }
 }
 
-/// Six times the volume that the cone from `apex` has on the wrong side; any larger number once it exceeds `enough`.
+/// Returns six times the volume that the cone from `apex` has on the wrong side; once that exceeds `enough`, any larger
+/// number.
 double SurfaceTets::wrong_side(const Triangles& part, const glm::dvec3& apex, double enough) const {
   double wrong = 0;
   for (const CornerTriangle& t : part) {
@@ -144,8 +145,8 @@ bool SurfaceTets::has_flat_tets(const Triangles& part, std::uint32_t apex) const
   });
 }
 
-/// Fills by a cone from one point that sees all triangles. Prefers a corner in no triangle's plane but its own, then an
-/// inner point; without `strictly`, accepts any such corner.
+/// Fills the part by a cone from one point that sees all triangles. Prefers a corner that is only in the planes of its
+/// own triangles, then an inner point; without `strictly`, accepts any corner that sees all triangles.
 bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   take_measures(part);
   const double rounding = by_rounding * volume6_;
@@ -171,9 +172,9 @@ bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   return true;
 }
 
-/// Moves `x` to a point on the inner side of all triangles' planes, if it finds one: repeatedly by the distance to the
-/// most violated plane (Agmon, "The relaxation method for linear inequalities", Canadian Journal of Mathematics, 1954).
-/// `soon`: gives up early.
+/// Moves `x` to a point on the inner side of all triangles' planes, if it finds one. Repeatedly moves `x` by the
+/// distance to the most violated plane (Agmon, "The relaxation method for linear inequalities", Canadian Journal of
+/// Mathematics, 1954). With `soon`, gives up early.
 bool SurfaceTets::find_kernel_point(const Triangles& part, bool soon, glm::dvec3& x) {
   planes_.clear();
   for (const CornerTriangle& t : part) {
@@ -194,7 +195,8 @@ bool SurfaceTets::find_kernel_point(const Triangles& part, bool soon, glm::dvec3
         if (depth < least) least = depth, worst = &plane;
       }
       if (worst == nullptr || least >= margin * size_) return true;
-      // Moves a little farther than the plane requires: this ends in finitely many steps if the region has an interior.
+      // The point moves a little farther than the plane requires, which ends in finitely many steps if the region has
+      // an interior.
       x -= worst->normal * (1.2 * (1.1 * margin * size_ - least));
     }
   }
@@ -215,7 +217,7 @@ void SurfaceTets::fill_part(const Triangles& part) {
   fill_overlapping(part);
 }
 
-/// Fills parts connected by edges of two triangles one by one, if there are several, each with a volume.
+/// Fills parts that edges of exactly two triangles connect, one by one, if there are several and each has a volume.
 bool SurfaceTets::split_apart(const Triangles& part) {
   const std::vector<Triangles> parts = parts_on_edges(part);
   if (parts.size() < 2) return false;
@@ -243,7 +245,8 @@ bool SurfaceTets::fill_by_ears(const Triangles& part, std::uint32_t attempt) {
   return fill_star(ears_.left(), false);
 }
 
-/// A cone from the corner, or their mean, with the least volume on the wrong side.
+/// Fills the part by a cone from a corner, or from the mean of the corners, whichever has the least volume on the wrong
+/// side.
 void SurfaceTets::fill_overlapping(const Triangles& part) {
   fill_ = SurfaceFill::overlapping;
   take_measures(part);

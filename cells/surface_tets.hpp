@@ -12,12 +12,12 @@
 
 namespace tessera::cells {
 
-/// How a closed surface was filled with tets, the best method first.
+/// How a closed surface was filled with tets. Better methods have smaller values.
 enum class SurfaceFill : std::uint8_t {
-  from_corner,  ///< a cone over its triangles from one of its corners
-  from_inside,  ///< a cone from an inner point that sees all of them
-  in_pieces,    ///< tets cut off until one of the above applies
-  overlapping   ///< a cone with some inverted tets: no other method worked
+  from_corner,  ///< a cone over the triangles from one of their corners
+  from_inside,  ///< a cone from an inner point that sees all triangles
+  in_pieces,    ///< tets were cut off until one of the methods above was possible
+  overlapping   ///< a cone with some inverted tets, because no other method was possible
 };
 
 /// Fills closed surfaces with tets whose outer faces are the surface's triangles.
@@ -25,17 +25,18 @@ class SurfaceTets {
  public:
   using LocalTet = std::array<std::uint32_t, 4>;
 
-  /// A point of the tets inside the surface.
+  /// A point that was added inside the surface.
   struct Inside {
     glm::dvec3 place;
-    std::vector<std::uint32_t> seen;  ///< the corners that it is a combination of
+    std::vector<std::uint32_t> seen;  ///< the corners whose combination is the point
   };
 
-  /// `triangles` are oriented outward, with corners `p`; every edge is used equally often in both directions. Costs
-  /// about triangles times corners in difficult cases, and no more than some milliseconds.
+  /// Fills a surface. `triangles` are oriented outward, with corners `p`; every edge is used equally often in both
+  /// directions. In difficult cases the time is proportional to the number of triangles times that of corners, up to a
+  /// limit of some milliseconds.
   SurfaceFill fill(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles);
 
-  /// Corners, followed by the indices of `inside()`.
+  /// The tets, as indices of corners, or, after the last of these, of `inside()`.
   [[nodiscard]] const std::vector<LocalTet>& tets() const { return tets_; }
   [[nodiscard]] const std::vector<Inside>& inside() const { return inside_; }
 
@@ -59,7 +60,7 @@ class SurfaceTets {
   SurfaceFill fill_ = SurfaceFill::from_corner;
   SurfaceEars ears_;
 
-  // Of the current part.
+  // Corners of the part that is being filled.
   std::vector<std::uint32_t> corners_;
   glm::dvec3 mean_{0};
   double volume6_ = 0, noise6_ = 0, size_ = 0;
@@ -70,8 +71,8 @@ class SurfaceTets {
   std::vector<Plane> planes_;
 };
 
-/// The value at `x` of the least-squares linear fit of values at points, clamped to their range: exact for linear
-/// values, whatever `x`; their mean at the mean of the points.
+/// Returns the value at `x` of the least-squares linear fit of values at points, clamped to the range of the values. It
+/// is exact for linear values, whatever `x`; at the mean of the points it is the mean of the values.
 double fitted_value(std::span<const glm::dvec3> points, std::span<const double> values, const glm::dvec3& x);
 
 }  // namespace tessera::cells

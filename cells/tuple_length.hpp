@@ -6,7 +6,7 @@
 
 namespace tessera::cells {
 
-/// Length of a tuple of any number type, without overflow or underflow; NaN or infinite if a component is.
+/// Returns the length of a tuple of any number type, without overflow or underflow. NaN or infinite if a component is.
 template <class T>
 double tuple_length(const T* tuple, int components) {
   double sum = 0;

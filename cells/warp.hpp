@@ -10,8 +10,8 @@
 namespace tessera::cells {
 
 /// Whether the name of a vector denotes a displacement, in upper or lower case: "dis", "disp", "displ", "displacement",
-/// optionally with "s" or "_" at the end. VTK's reader accepts any name that begins with "dis", and so "dissipation"
-/// and "distance" too.
+/// optionally with "s" or "_" at the end. VTK's reader accepts any name that begins with "dis", even "dissipation" and
+/// "distance".
 bool is_displacement_name(const std::string& name);
 
 /// Moves the points of the blocks as requested (ReadOptions::warp). Without a request, points of Exodus files move by

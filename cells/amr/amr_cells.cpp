@@ -16,7 +16,7 @@ AmrIndex moved(AmrIndex p, std::size_t axis, std::int32_t by) {
   return p;
 }
 
-/// Corner k of a cube, x fastest.
+/// Returns corner k of a cube; x varies fastest with k.
 AmrIndex corner_of(const AmrCube& cube, unsigned k) {
   return {cube.low[0] + ((k & 1) != 0 ? cube.size : 0), cube.low[1] + ((k & 2) != 0 ? cube.size : 0),
           cube.low[2] + ((k & 4) != 0 ? cube.size : 0)};
@@ -58,14 +58,15 @@ class Divider {
   }
 
  private:
-  /// The size of the parts of a divided edge or face of this length; 0 if it is not divided.
+  /// Returns the size of the parts into which an edge or face of this length is divided; 0 if it is not divided.
   [[nodiscard]] std::int32_t finer_than(std::int32_t size) const {
     for (const auto& [from, to] : cubes_.finer)
       if (from == size) return to;
     return 0;
   }
 
-  /// Whether a corner of another cube is on an edge; a corner on a face implies others on its edges.
+  /// Whether corners of other cubes are on an edge of the cube. A corner on a face implies others on the edges of that
+  /// face.
   [[nodiscard]] bool has_hanging(const AmrCube& cube) const {
     const std::int32_t part = finer_than(cube.size);
     if (part == 0) return false;
@@ -75,7 +76,7 @@ class Divider {
     return false;
   }
 
-  /// The corners inside an edge, without its ends, in order.
+  /// Appends the corners of other cubes inside an edge, without its ends, in order.
   void hanging_on(const AmrIndex& p, std::size_t axis, std::int32_t length, std::vector<std::uint32_t>& out) const {
     const std::int32_t part = finer_than(length);
     if (part == 0 || !cubes_.corners.has(moved(p, axis, part))) return;
@@ -108,12 +109,13 @@ class Divider {
     add_side(corner[2], moved(low, v, size), u, true);
     add_side(corner[3], low, v, true);
     if (round_.size() == 4) {
-      // The lowest corner is the smallest by position, and split_cell() cuts from it.
+      // The lowest corner has the smallest position, and split_cell() cuts from the smallest.
       add_tet(corner[0], corner[1], corner[2]);
       add_tet(corner[0], corner[2], corner[3]);
       return;
     }
-    // The mean sums in the order of the axes, whichever cube the face belongs to.
+    // The corners are added in the order of the axes, so that the mean does not depend on which cube the face belongs
+    // to.
     const std::uint32_t centre = add_centre(low, moved(moved(low, u, size), v, size), corner);
     for (std::size_t k = 0; k < round_.size(); ++k) add_tet(centre, round_[k], round_[(k + 1) % round_.size()]);
   }

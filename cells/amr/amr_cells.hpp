@@ -16,26 +16,28 @@ struct AmrCube {
   std::int32_t size;
 };
 
-/// Cubes that fill a part of space, with values at their corners.
+/// Cubes that fill a part of space, with values at their corners or in the cubes.
 ///
-/// Invariant  cubes of a lattice that are adjacent like the leaves of a tree: a cube with finer neighbours at a face
-///            has n x n of them there, each of which may be divided further.
+/// Invariant  the cubes belong to a lattice and are adjacent like the leaves of a tree: a cube with finer neighbours at
+/// a
+///            face has n x n of them there, each of which may be divided further.
 struct AmrCubes {
-  AmrVertices corners;  ///< of all cubes
+  AmrVertices corners;  ///< corners of all cubes
   std::vector<AmrCube> cubes;
-  std::vector<double> values;  ///< per corner, or per cube
+  std::vector<double> values;  ///< one value per corner, or per cube
 
-  /// For each size of cubes that have finer neighbours, the size of these.
+  /// For each size of cubes that have finer neighbours, the size of these neighbours.
   std::vector<std::pair<std::int32_t, std::int32_t>> finer;
 };
 
-/// Cubes with one value each, as voxels. `steps` steps of `cubes` are one step of `lattice`.
+/// Converts cubes with one value each to voxels. `steps` steps of the cubes' lattice are one step of `lattice`.
 CellBlock voxels_of(const AmrLattice& lattice, int steps, AmrCubes cubes, const std::string& field);
 
-/// Cubes with values at their corners. They become voxels or, where the corners of finer cubes are on their edges or
-/// faces, tets that conform to them: a cone from the cube's centre over its faces, which are divided like the other
-/// side's. A face without corners on its edges is cut as in split_cell(); any other face becomes a fan around its
-/// centre. Centres have the mean of the corners. The field is continuous, and linear if the values are linear.
+/// Converts cubes with values at their corners. A cube becomes a voxel, unless corners of finer cubes are on its edges
+/// or faces. In that case it becomes tets that conform to the finer cubes: a cone from the cube's centre over its
+/// faces, which are divided like the faces on the other side. A face without corners on its edges is cut as in
+/// split_cell(); any other face becomes a fan around its centre. The value at a centre is the mean of the values at the
+/// corners. The resulting field is continuous, and linear if the values are linear.
 ///
 /// Source  Cones over subdivided faces: Weber et al., "Crack-free isosurface extraction from adaptive mesh refinement
 ///         data" (Hierarchical and Geometrical Methods in Scientific Visualization, 2003) stitch a dual mesh; here the

@@ -64,7 +64,7 @@ void require_block(const AmrBlock& part, const std::string& source) {
   }
 }
 
-/// Distinct spacings from the coarsest to the finest, each represented by one block.
+/// Returns one block for each distinct spacing, from the coarsest to the finest.
 std::vector<const AmrBlock*> distinct_levels(std::span<const AmrBlock> blocks) {
   std::vector<const AmrBlock*> levels;
   for (const AmrBlock& block : blocks) levels.push_back(&block);
@@ -75,7 +75,7 @@ std::vector<const AmrBlock*> distinct_levels(std::span<const AmrBlock> blocks) {
   return levels;
 }
 
-/// Sizes of the levels' cells on the finest one's lattice.
+/// Returns the size of each level's cells on the lattice of the finest level.
 std::vector<std::int32_t> level_sizes(std::span<const AmrBlock* const> levels, const std::string& source) {
   std::vector<std::int32_t> size(levels.size(), 1);
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
@@ -202,7 +202,7 @@ class Coverage {
     return amr_.size[static_cast<std::size_t>(level)];
   }
 
-  /// Finds blocks that intersect this one and are finer, or equally fine and listed earlier.
+  /// Finds blocks that intersect block p and are finer, or equally fine and listed earlier.
   void find_covering(std::size_t p) {
     covering_.clear();
     for (const std::size_t other : order_) {
@@ -233,7 +233,7 @@ class Coverage {
         }
   }
 
-  /// Adds the parts of a cell that finer blocks leave uncovered, if several cover it partly.
+  /// Adds the parts of a cell that finer blocks leave uncovered, if these blocks cover parts of the cell.
   void add_rest(const AmrLeaf& cell) {
     const Box box = cell_box(cell.low, size_of_level(cell.level));
     bool met = false;
@@ -260,7 +260,7 @@ class Coverage {
 
   AmrLeaves& amr_;
   const std::string& source_;
-  std::size_t read_ = 0;  ///< cells of the previous blocks
+  std::size_t read_ = 0;  ///< number of cells in the previous blocks
   std::vector<Box> boxes_;
   std::vector<std::size_t> order_, covering_;
   std::vector<std::uint8_t> marks_;

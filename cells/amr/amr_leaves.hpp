@@ -18,19 +18,19 @@ namespace tessera::cells {
 /// A corner on the lattice of the finest cells.
 using AmrIndex = std::array<std::int32_t, 3>;
 
-/// Positions of the finest cells' corners. Corners of all levels have integer coordinates, so that coincident corners
-/// have exactly equal positions.
+/// Positions of the corners of the finest cells. Corners of all levels have integer coordinates on this lattice, so
+/// that coincident corners have exactly equal positions.
 struct AmrLattice {
   glm::dvec3 origin{0}, spacing{1};
 
-  /// For trees: the positions of the coarsest cells' corners along each axis, `coarsest` steps apart, with uniform
-  /// steps between them. Empty for blocks, which use origin and spacing.
+  /// For trees: the positions of the coarsest cells' corners along each axis. They are `coarsest` steps of the lattice
+  /// apart, and the steps between two of them are uniform. Empty for blocks, which use origin and spacing.
   std::array<std::vector<double>, 3> corners{};
   std::int32_t coarsest = 1;
 
   [[nodiscard]] bool is_even() const { return corners[0].empty(); }
 
-  /// The coordinate along an axis; n need not be an integer.
+  /// Returns the coordinate of index n along an axis; n need not be an integer.
   [[nodiscard]] double position(std::size_t axis, double n) const {
     if (is_even()) return origin[static_cast<int>(axis)] + spacing[static_cast<int>(axis)] * n;
     const std::vector<double>& at = corners[axis];
@@ -42,46 +42,48 @@ struct AmrLattice {
 
 /// A cell that is not covered by a finer one.
 struct AmrLeaf {
-  AmrIndex low;        ///< its lowest corner
-  std::uint32_t cell;  ///< index, in its part, of the cell whose value it has
+  AmrIndex low;        ///< lowest corner of the leaf
+  std::uint32_t cell;  ///< index, in the part, of the cell that supplies the value
   std::uint32_t part;  ///< index in `parts`
-  std::int32_t level;  ///< finer than that cell's level if finer cells cover a part of it
+  std::int32_t level;  ///< finer than the level of `cell` if finer cells cover a part of that cell
 };
 
-/// The remaining cells of a mesh with refinement levels, which are adjacent without overlap or gap. A cell of a level
-/// and all finer ones inside form a tree: level l + 1 divides a cell of level l, if at all, into n^3 cells.
+/// The cells of a mesh with refinement levels without those covered by finer cells. They are adjacent without overlap
+/// or gap. A cell and all finer cells inside it form a tree: level l + 1 divides a cell of level l either not at all or
+/// into n^3 cells.
 struct AmrLeaves {
   /// One block of the file.
   struct Part {
     std::string name;
     std::int32_t level = 0;
     AmrIndex low{};
-    AmrIndex cells{};  ///< along each axis
+    AmrIndex cells{};  ///< number of cells along each axis
   };
   AmrLattice lattice;
-  std::vector<std::int32_t> size;  ///< size of each level's cells on the lattice; the last is 1
+  std::vector<std::int32_t> size;  ///< size on the lattice of each level's cells; the last is 1
   std::vector<Part> parts;
   std::vector<AmrLeaf> leaves;
   std::uint64_t covered = 0, hidden = 0;  ///< cells of the file that are left out
 
-  /// Whether a cell with these bits of vtkGhostType is left out; counts it if so.
+  /// Whether a cell with these bits of vtkGhostType is left out. Counts cells that are left out.
   bool leaves_out(std::uint8_t ghost);
 };
 
-/// Limit of cells of the finest level along an axis: twice that many, and halves of them, must fit into 32 bits.
+/// Limit of the number of cells of the finest level along an axis: twice that number, and halves of these cells, must
+/// fit into 32 bits.
 inline constexpr double most_amr_corners = 1 << 29;
 
-/// The leaves of trees, each given by its level and its lowest corner on the part's own lattice.
+/// The leaves of trees. Each has a level, and a lowest corner on the part's own lattice.
 struct AmrTreeLeaves {
   std::vector<std::int32_t> lows;  ///< three numbers per leaf
   std::vector<std::uint8_t> levels;
 };
 
-/// A block of axis-aligned cells, or trees of them, as described by a file.
+/// A block of axis-aligned cells, or a part with trees of cells, as described by a file.
 struct AmrBlock {
-  std::string name;                                                      ///< empty if it is the only one
+  std::string name;                                                      ///< empty if the file has only one block
   std::array<std::int64_t, 6> extent{};                                  ///< first and last point index along each axis
-  std::function<std::vector<std::uint8_t>(std::size_t cells)> ghosts{};  ///< bits of vtkGhostType, or empty
+  std::function<std::vector<std::uint8_t>(std::size_t cells)> ghosts{};  ///< returns bits of vtkGhostType, or nothing
 
   // For blocks:
   bool is_image = false;
@@ -89,16 +91,18 @@ struct AmrBlock {
   std::array<double, 9> direction{};
 
   // For trees:
-  int branching = 0, levels = 0;                                       ///< children along an axis; 0 levels: no trees
-  std::function<std::vector<double>(std::size_t axis)> coordinates{};  ///< of the coarsest cells' corners; or empty
+  int branching = 0, levels = 0;                                       ///< `branching`: children of a cell along each
+                                                                       ///< axis; 0 levels: no trees
+  std::function<std::vector<double>(std::size_t axis)> coordinates{};  ///< returns the coarsest cells' corners, or
+                                                                       ///< nothing
   std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< no value: stored as another number type
 };
 
-/// The leaves of blocks, whose spacings determine their levels. Throws Error(bad_input) if levels do not nest.
+/// Finds the leaves of blocks, whose spacings determine their levels. Throws Error(bad_input) if levels do not nest.
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source);
 
-/// The leaves of trees, in one part or several, which share one grid of coarsest cells and divide no cell of it twice.
-/// Ghost cells are left out. Throws Error(bad_input) for other trees.
+/// Finds the leaves of trees, in one part or several. The parts must have the same grid of coarsest cells, and no two
+/// of them may divide the same cell of that grid; otherwise throws Error(bad_input). Ghost cells are left out.
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source);
 
 }  // namespace tessera::cells

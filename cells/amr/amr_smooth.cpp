@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::uint32_t none = AmrVertices::none;
 
-/// The leaves around a point, one per octant: bit a of the index is set on the higher side along axis a. `none` where
-/// there is no leaf.
+/// The leaves around a point, one per octant: bit a of the index is set on the higher side along axis a. `none` if an
+/// octant does not contain a leaf.
 using Around = std::array<std::uint32_t, 8>;
 
-/// Points are on a lattice with half the leaves' step.
+/// Computes the smooth field. Points are on a lattice with half the step of the leaves' lattice.
 class Smoothing {
  public:
   Smoothing(const AmrLeaves& amr, std::span<const double> values) : amr_(amr), values_(values) {
@@ -48,7 +48,7 @@ class Smoothing {
     cubes_.finer.emplace_back(size, part);
   }
 
-  /// The leaf that contains a finest cell.
+  /// Returns the leaf that contains a cell of the finest lattice.
   [[nodiscard]] std::uint32_t leaf_at(const AmrIndex& cell) const {
     if (cell[0] < 0 || cell[1] < 0 || cell[2] < 0) return none;
     for (std::size_t level = amr_.size.size(); level-- > 0;) {
@@ -70,7 +70,7 @@ class Smoothing {
     return around;
   }
 
-  /// Whether all existing leaves around a point have one level.
+  /// Whether all existing leaves around a point have the same level.
   [[nodiscard]] bool are_of_one_level(const Around& around) const {
     std::int32_t level = -1;
     for (const std::uint32_t l : around) {
@@ -124,7 +124,8 @@ class Smoothing {
     const std::uint32_t finest = *std::max_element(around.begin(), around.end(), [&](std::uint32_t a, std::uint32_t b) {
       return (a == none ? -1 : leaf(a).level) < (b == none ? -1 : leaf(b).level);
     });
-    // In the middle of an edge or face, the mean of its corners, independent of the leaf.
+    // In the middle of an edge or face, the value is the mean of the corners of the edge or face, which does not depend
+    // on the leaf.
     const std::int32_t size = size_of(finest);
     std::array<std::int32_t, 3> half{};
     int corners = 1;
@@ -144,8 +145,8 @@ class Smoothing {
     return sum / corners;
   }
 
-  /// For leaves of one level around a point: the mean of their values or, where their sizes differ along an axis, the
-  /// interpolation between their centres.
+  /// Returns the value at a point surrounded by leaves of the same level: the mean of their values or, where the sizes
+  /// of the leaves differ along an axis, the interpolation between their centres.
   [[nodiscard]] double mean_around(const AmrIndex& p, const Around& around) const {
     std::array<double, 3> higher{0.5, 0.5, 0.5};  // weight of the higher side
     if (!amr_.lattice.is_even()) {
@@ -167,7 +168,7 @@ class Smoothing {
     return sum / weights;
   }
 
-  /// The value at a corner where levels meet.
+  /// Returns the value at a corner where different levels meet.
   [[nodiscard]] double value_at_corner(const AmrIndex& p, const Around& around) const {
     std::array<std::uint32_t, 8> leaves{};
     std::array<glm::dvec3, 8> offsets{};
@@ -193,7 +194,7 @@ class Smoothing {
 
   const AmrLeaves& amr_;
   std::span<const double> values_;
-  AmrVertices lows_;  ///< numbered like the leaves
+  AmrVertices lows_;  ///< points numbered like the leaves that begin there
   AmrCubes cubes_;
 };
 
@@ -201,9 +202,9 @@ class Smoothing {
 
 namespace {
 
-/// Weights with sum 1 and mean 0 that deviate least from the proportions of the factors; some may be negative. Returns
-/// false and leaves the weights unchanged if there are none, or if they could extrapolate beyond the range of the
-/// values by more than its width.
+/// Computes weights with sum 1 and weighted mean 0 that deviate least from the proportions of the factors; some may be
+/// negative. Returns false and leaves the weights unchanged if there are none, or if they could extrapolate beyond the
+/// range of the values by more than the width of the range.
 bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
                       std::span<double> weights) {
   glm::dmat4 moments(0);
@@ -229,7 +230,7 @@ bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> fac
 }  // namespace
 
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights) {
-  // Ignores axes along which all offsets are on one side: values are continued constantly there.
+  // Axes along which all offsets are on one side are ignored: values are continued as constants there.
   glm::dvec3 scale(0), is_used(0);
   glm::bvec3 below(false), above(false);
   for (const glm::dvec3& d : offsets)
@@ -245,8 +246,8 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     factor[k] = weights[k];
     for (int a = 0; a < 3; ++a) d[k][a] = is_used[a] > 0 ? offsets[k][a] / scale[a] : 0;
   }
-  // Newton's method on the logarithm of the sum of factor exp(multiplier . d), which is convex; its gradient is 0 at
-  // the desired weights.
+  // Minimizes the logarithm of the sum of factor exp(multiplier . d), which is convex, by Newton's method. Its gradient
+  // is 0 at the desired weights.
   const auto log_sum = [&](const glm::dvec3& multiplier) {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) sum += weights[k] = factor[k] * std::exp(glm::dot(multiplier, d[k]));
@@ -265,8 +266,8 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     const glm::dvec3 change = glm::inverse(curvature) * mean;
     glm::dvec3 next = multiplier - change;
     double then = log_sum(next);
-    const double most = now + 1e-14;  // near the end only rounding changes the sum
-    // If 0 is outside the hull of the offsets, the sum decreases towards 0 without end.
+    const double most = now + 1e-14;  // near the minimum, only rounding changes the sum
+    // If 0 is outside the hull of the offsets, the logarithm decreases without bound.
     const auto is_good = [&] { return then <= most && then > -20; };
     for (double length = 0.5; length > 1e-6 && !is_good(); length /= 2) {
       next = multiplier - length * change;
@@ -280,7 +281,7 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
   }
   glm::dvec3 mean(0);
   for (std::size_t k = 0; k < n; ++k) mean += weights[k] * d[k];
-  if (glm::length(mean) > 1e-12)  // far above the residual of Newton's method where such weights exist
+  if (glm::length(mean) > 1e-12)  // far above the residual of Newton's method if the desired weights exist
     weigh_by_squares(std::span(d).first(n), std::span(factor).first(n), is_used, weights);
 }
 

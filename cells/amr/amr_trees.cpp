@@ -31,7 +31,7 @@ std::vector<double> coordinates_of(const AmrBlock& trees, std::size_t axis, cons
   return at;
 }
 
-/// Number of finest cells along one of the coarsest.
+/// Returns the number of finest cells along one of the coarsest cells.
 std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& source) {
   double steps = 1;
   for (int level = 1; level < levels && steps <= most_amr_corners; ++level) steps *= part.branching;
@@ -43,7 +43,7 @@ std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& sourc
   return static_cast<std::int32_t>(steps);
 }
 
-/// Ensures that all corners of cells are distinct.
+/// Throws unless all corners of cells along an axis are distinct and ascending.
 void require_rising(std::span<const double> at, std::int32_t steps, std::size_t axis, const std::string& source) {
   for (std::size_t n = 0; n + 1 < at.size(); ++n) {
     const double size = std::max(std::abs(at[n]), std::abs(at[n + 1])), step = (at[n + 1] - at[n]) / steps;
@@ -68,7 +68,7 @@ class TreeLeaves {
     if (lows.size() != 3 * levels.size() || levels.size() > std::numeric_limits<std::uint32_t>::max())
       throw unfit(part, source_);
     const std::vector<std::uint8_t> ghost = part.ghosts(levels.size());
-    // Other parts may have deeper trees.
+    // Size of the part's finest cells; it is not 1 if other parts have deeper trees.
     const std::int32_t scale = amr_.size[static_cast<std::size_t>(part.levels) - 1];
     const auto number = static_cast<std::uint32_t>(amr_.parts.size());
     amr_.parts.push_back({.name = part.name});
@@ -88,7 +88,7 @@ class TreeLeaves {
   }
 
  private:
-  /// Throws if two leaves begin at the same place, or a tree is in two parts.
+  /// Throws if two leaves begin at the same place, or if two parts contain the same tree.
   void require_new(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const AmrBlock& part) {
     if (several_) require_own_tree(leaf, grid, part);
     if (lows_.add(leaf.low) != amr_.leaves.size()) throw unfit(part, source_);
@@ -109,7 +109,7 @@ class TreeLeaves {
   const std::string& source_;
   bool several_;
   AmrVertices lows_;
-  std::unordered_map<std::int64_t, std::uint32_t> owners_;  ///< the part of each tree
+  std::unordered_map<std::int64_t, std::uint32_t> owners_;  ///< the part that contains each tree
 };
 
 }  // namespace

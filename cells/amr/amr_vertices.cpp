@@ -7,8 +7,8 @@
 namespace tessera::cells {
 namespace {
 
-/// Sixteen consecutive points in a row have adjacent slots, because they are usually requested together: they share
-/// cache lines.
+/// Sixteen consecutive points in a row have adjacent slots, which share cache lines, because these points are usually
+/// requested together.
 std::uint64_t hash_of(const AmrIndex& p) {
   const auto word = [](std::int32_t n) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(n)); };
   const std::uint64_t x = word(p[0]);
@@ -17,7 +17,7 @@ std::uint64_t hash_of(const AmrIndex& p) {
 
 }  // namespace
 
-/// The slot of the point, or the free slot for it. There is always a free slot.
+/// Returns the slot of the point, or the free slot for it. There is always a free slot.
 std::size_t AmrVertices::slot_of(const AmrIndex& p) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = hash_of(p) & mask;

@@ -17,11 +17,12 @@ class AmrVertices {
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] const AmrIndex& operator[](std::size_t id) const { return points_[id]; }
 
-  /// The number of a point; `none` if it was not added.
+  /// Returns the number of a point; `none` if the point was not added.
   [[nodiscard]] std::uint32_t find(const AmrIndex& p) const;
   [[nodiscard]] bool has(const AmrIndex& p) const { return find(p) != none; }
 
-  /// The number of a point, which is added if new. Throws Error(bad_input) for more than 2^32 - 2 points.
+  /// Returns the number of a point, after adding the point if it is new. Throws Error(bad_input) for more than 2^32 - 2
+  /// points.
   std::uint32_t add(const AmrIndex& p);
 
  private:

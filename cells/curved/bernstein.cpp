@@ -42,7 +42,7 @@ BernsteinForm make_form(int corners, int degree) {
   std::vector<long double> values(n * n);
   for (std::size_t at = 0; at < n; ++at)
     for (std::size_t of = 0; of < n; ++of) values[of * n + at] = bernstein(form.points[of], form.points[at], degree);
-  form.matrix = inverse_matrix(std::move(values), n);  // of the transpose, because the matrix is stored transposed
+  form.matrix = inverse_matrix(std::move(values), n);  // transposed, because the matrix is stored transposed
   return form;
 }
 

@@ -18,7 +18,7 @@ using Basis = std::array<double, highest_order + 1>;
 constexpr std::size_t most_pyramid_nodes =
     (highest_pyramid_order + 1) * (highest_pyramid_order + 2) * (2 * highest_pyramid_order + 3) / 6;
 
-/// Lagrange polynomials of degree n for nodes 0, 1/n, ..., 1 at x.
+/// Evaluates the Lagrange polynomials of degree n for nodes 0, 1/n, ..., 1 at x.
 void lagrange(int n, double x, Basis& out) {
   if (n == 1) {
     out[0] = 1 - x, out[1] = x;
@@ -36,15 +36,15 @@ void lagrange(int n, double x, Basis& out) {
   }
 }
 
-/// Silvester polynomials of barycentric coordinate x: product of (n x - m) / (k - m) over m < k.
+/// Evaluates the Silvester polynomials of barycentric coordinate x: the product of (n x - m) / (k - m) over m < k.
 void silvester(int n, double x, Basis& out) {
   out[0] = 1;
   for (int k = 1; k <= n; ++k)
     out[static_cast<std::size_t>(k)] = out[static_cast<std::size_t>(k - 1)] * (n * x - (k - 1)) / k;
 }
 
-/// Converts a Bezier cell's coefficients along one of its axes, or on a triangle or tet, to values on the lattice:
-/// `count` numbers, `stride` apart; `corners` is the number of corners of the simplex.
+/// Converts the coefficients of a Bezier cell along one of its axes, or on a triangle or tet, to values on the lattice.
+/// There are `count` numbers, `stride` apart; `corners` is the number of corners of the simplex.
 void to_values(int corners, int degree, glm::dvec4* first, std::size_t count, std::size_t stride) {
   if (degree < 2) return;
   const std::vector<double>& matrix = bernstein_values(corners, degree);
@@ -54,14 +54,14 @@ void to_values(int corners, int degree, glm::dvec4* first, std::size_t count, st
   for (std::size_t at = 0; at < count; ++at) first[at * stride] = values[at];
 }
 
-/// The same for all rows along an axis: n + 1 numbers each.
+/// Converts all rows along an axis, of n + 1 numbers each.
 void rows_to_values(int n, std::size_t stride, std::span<glm::dvec4> all) {
   const std::size_t count = static_cast<std::size_t>(n) + 1;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (k / stride % count == 0) to_values(2, n, &all[k], count, stride);
 }
 
-/// Converts the whole cell.
+/// Converts the coefficients of the whole cell.
 void cell_to_values(const CurvedLattice& lattice, std::span<glm::dvec4> all) {
   const auto& n = lattice.order;
   const auto number = [](int order) { return static_cast<std::size_t>(order); };
@@ -77,7 +77,7 @@ void cell_to_values(const CurvedLattice& lattice, std::span<glm::dvec4> all) {
   rows_to_values(n[2], layer, all);
 }
 
-/// The value in the middle of a quadratic triangle, from its corners and mid-edge nodes.
+/// Returns the value in the middle of a quadratic triangle, given the sums over its corners and its mid-edge nodes.
 glm::dvec4 middle_of_triangle(const glm::dvec4& corners, const glm::dvec4& edges) {
   return (4.0 * edges - corners) / 9.0;
 }
@@ -142,9 +142,9 @@ void CurvedCell::make_inside() {
   if (lattice_->has_bubbles) make_bubbles();
 }
 
-/// A bubble coefficient is the difference between a node in the middle of a face or cell and the functions before it,
-/// divided by the value of its own function there. Without the node it is 0, but the inside of a wedge is interpolated
-/// between its triangles.
+/// The coefficient of a bubble is the difference between the node in the middle of a face or cell and the sum of the
+/// previous functions there, divided by the value of the bubble's function there. Without the node it is 0, except that
+/// the inside of a wedge is interpolated between its triangles.
 void CurvedCell::make_bubbles() {
   const auto faces = faces_of(lattice_->family);
   const auto middle = [](const LatticePlace& a, const LatticePlace& b) {
@@ -257,7 +257,8 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
   part.triangle = face.size == 3;
   part.origin = place_of_corner(first);
   const LatticePlace a = lattice_corner(first), b = lattice_corner(next), c = lattice_corner(last);
-  // The components of the face's two directions in the cell are -1, 0 or 1, so two axes are enough to distinguish them.
+  // In the cell, the components of the face's two directions are -1, 0 or 1, so two axes are enough to distinguish the
+  // directions.
   const auto &A = corners_of(lattice_->family)[first], &B = corners_of(lattice_->family)[next],
              &C = corners_of(lattice_->family)[last];
   for (const auto& [x, y] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
@@ -266,7 +267,7 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
     if (determinant == 0) continue;
     part.axis = {x, y};
     part.inverse = {cy * determinant, -cx * determinant, -by * determinant,
-                    bx * determinant};  // the determinant is 1 or -1
+                    bx * determinant};  // instead of a division: the determinant is 1 or -1
     break;
   }
   part.order = {steps_between(a, b), steps_between(a, c)};
@@ -412,7 +413,7 @@ int CurvedCell::degree_on(unsigned faces) {
     case CurvedFamily::wedge:
       return n[0] + n[2] + bubbles + weights;
     case CurvedFamily::pyramid:
-      return n[0] + 2 + bubbles;  // rational: approximated by a polynomial of this degree
+      return n[0] + 2 + bubbles;  // rational functions, which a polynomial of this degree approximates
   }
   return 1;
 }

@@ -30,10 +30,10 @@ bool is_curved(std::uint8_t number) {
          type == CellType::triquadratic_pyramid || type == CellType::lagrange_pyramid || has_degrees(number);
 }
 
-/// Limit within one cell: beyond it, values with the smallest weight keep only a few bits.
+/// Largest ratio of weights within one cell. Beyond it, values with the smallest weight keep only a few bits.
 constexpr double most_weight_ratio = 1e6;
 
-/// VTK's point array of rational weights of Bezier cells, if present.
+/// Returns VTK's point array of rational weights of Bezier cells; empty if there is none.
 std::vector<double> weights_in(const CellBlock& block, std::size_t points) {
   std::vector<double> weights;
   for (const BlockField& field : block.fields) {
@@ -47,7 +47,7 @@ std::vector<double> weights_in(const CellBlock& block, std::size_t points) {
   return weights;
 }
 
-/// VTK's cell array of the orders of Lagrange and Bezier cells, if present.
+/// Returns VTK's cell array of the orders of Lagrange and Bezier cells; empty if there is none.
 std::vector<std::array<int, 3>> degrees_in(const CellBlock& block) {
   std::vector<std::array<int, 3>> degrees;
   for (const BlockField& field : block.fields) {
@@ -69,7 +69,7 @@ std::vector<std::array<int, 3>> degrees_in(const CellBlock& block) {
 
 }  // namespace
 
-constexpr std::size_t enough_of_a_cell = 3 << 17;  // tets: enough for a small mesh
+constexpr std::size_t enough_of_a_cell = 3 << 17;  // number of tets that is enough even for a small mesh
 
 bool has_curved_cells(const CellBlock& block) { return std::any_of(block.types.begin(), block.types.end(), is_curved); }
 
@@ -90,7 +90,7 @@ CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> poi
     if (std::optional<CurvedLattice> made = curved_lattice(block.types[c], nodes, {degrees[0], degrees[1], degrees[2]}))
       lattices_.emplace(key, std::move(*made));
   }
-  // Bounds the time for a cell that needs far more tets than others, as in a damaged file.
+  // Bounds the time for a cell that needs far more tets than others, for example in a damaged file.
   double cost = 1;
   for (const auto& [key, made] : lattices_) cost = std::max(cost, cost_of_tet(made));
   if (!settings_.is_chosen && cost > 1 && settings_.limit > enough_of_a_cell)
@@ -123,7 +123,7 @@ std::span<const std::uint32_t> CurvedCells::nodes_of(std::size_t cell) const {
   return std::span(block_.connectivity).subspan(block_.offsets[cell], block_.offsets[cell + 1] - block_.offsets[cell]);
 }
 
-/// Sets the cell's nodes, and the tets of its corners.
+/// Copies the cell's nodes, and the tets between its corners.
 void CurvedCells::begin(std::size_t cell, CurvedWork& work) const {
   work.positions.clear(), work.values.clear(), work.weights.clear(), work.first.clear();
   const bool is_weighted = !weights_.empty() && is_bezier(block_.types[cell]);

@@ -23,9 +23,9 @@ namespace tessera::cells {
 struct CurvedSettings {
   CurvedTolerance tolerance;
   std::size_t limit = 0;  ///< largest number of tets for one cell; 0: no cell is divided
-  /// Largest number of tets for all cells, in addition to 64 for each.
+  /// Largest number of tets for all cells together, in addition to 64 for each cell.
   std::uint64_t all = std::numeric_limits<std::uint64_t>::max() / 2;
-  /// `limit` was set by the user, and also applies to cells of high order, which take longer.
+  /// The user set `limit`; it then also applies to cells of high order, which take longer.
   bool is_chosen = false;
 };
 
@@ -35,7 +35,7 @@ struct CurvedWork {
   CurvedSplitter splitter;
   std::vector<glm::dvec3> positions;
   std::vector<double> values, weights;
-  std::vector<scene::Tet> first;  ///< between the corners, numbered in the cell
+  std::vector<scene::Tet> first;  ///< tets between the corners, in the cell's node numbers
 };
 
 /// The higher-order cells of a block that can be divided. Threads may process different cells in parallel.
@@ -46,24 +46,24 @@ class CurvedCells {
 
   [[nodiscard]] bool any() const { return !lattices_.empty(); }
 
-  /// Null if the cell is linear or of a kind that is drawn by its corners. The latter includes Bezier cells with
-  /// weights that are not positive or differ by a factor of more than 10^6.
+  /// Returns the lattice of a cell. Null if the cell is linear or of a kind that is drawn by its corners. The latter
+  /// includes Bezier cells with weights that are not positive or differ by a factor of more than 10^6.
   [[nodiscard]] const CurvedLattice* lattice(std::size_t cell) const;
 
-  /// Divides a cell that has a lattice; work.splitter has the result. Throws std::length_error for more than
+  /// Divides a cell that has a lattice; the result is in work.splitter. Throws std::length_error for more than
   /// settings().limit tets.
   void split(std::size_t cell, CurvedWork& work) const;
 
-  /// Passes the deviation of the edges, in tolerances, for each initial tet of all cells.
+  /// Calls `report` for each initial tet of all cells, with the deviation of its edges in tolerances.
   void tally_excess(const std::function<void(double excess)>& report) const;
 
-  /// Whether the cells become more tets than the settings allow, determined by dividing them.
+  /// Whether the cells become more tets than the settings allow. Determined by dividing the cells.
   [[nodiscard]] bool take_too_many() const;
 
   [[nodiscard]] const CurvedSettings& settings() const { return settings_; }
 
  private:
-  using Key = std::pair<std::size_t, std::array<int, 4>>;  ///< number of nodes, degrees, type
+  using Key = std::pair<std::size_t, std::array<int, 4>>;  ///< number of nodes, degrees and type
   [[nodiscard]] Key key_of(std::size_t cell) const;
   [[nodiscard]] std::span<const std::uint32_t> nodes_of(std::size_t cell) const;
   [[nodiscard]] bool has_usable_weights(std::size_t cell) const;

@@ -40,7 +40,7 @@ class Numbering {
     for (const LatticePlace& corner : corners_) add(corner);
   }
 
-  /// Adds the nodes between an edge's ends, starting at the first.
+  /// Adds the nodes between the ends of an edge, from the first end on.
   void add_edge(const Edge& edge) {
     const LatticePlace &a = corners_[static_cast<std::size_t>(edge[0])],
                        &b = corners_[static_cast<std::size_t>(edge[1])];
@@ -57,14 +57,14 @@ class Numbering {
   std::vector<LatticePlace> corners_;
 };
 
-/// a + u (b - a) / n + v (c - a) / n.
+/// Returns a + u (b - a) / n + v (c - a) / n.
 LatticePlace between(const LatticePlace& a, const LatticePlace& b, const LatticePlace& c, int u, int v, int n) {
   LatticePlace p;
   for (std::size_t x = 0; x < 3; ++x) p[x] = a[x] + (u * (b[x] - a[x]) + v * (c[x] - a[x])) / n;
   return p;
 }
 
-/// The nodes of a triangle of order n: corners and edges, then recursively the triangle inside.
+/// Adds the nodes of a triangle of order n: corners and edges, then recursively the triangle inside.
 void add_triangle(Numbering& numbering, const LatticePlace& a, const LatticePlace& b, const LatticePlace& c, int n) {
   const auto at = [&](int u, int v) { numbering.add(between(a, b, c, u, v, n)); };
   if (n == 0) return numbering.add(a);
@@ -77,7 +77,7 @@ void add_triangle(Numbering& numbering, const LatticePlace& a, const LatticePlac
                  n - 3);
 }
 
-/// The nodes of a tetrahedron with its corner at `from` and edges of n places along the axes.
+/// Adds the nodes of a tetrahedron with its corner at `from` and edges of n places along the axes.
 void add_tet(Numbering& numbering, const LatticePlace& from, int n) {
   const LatticePlace corner[] = {
       from, {from[0] + n, from[1], from[2]}, {from[0], from[1] + n, from[2]}, {from[0], from[1], from[2] + n}};
@@ -182,7 +182,7 @@ void number_slots(CurvedLattice& lattice) {
         if (is_of_lattice(lattice, {i, j, k})) lattice.slot_of_place[at] = lattice.slots++;
 }
 
-/// The index of the triangle whose middle is this place; no value for other places.
+/// Returns the index of the triangle whose middle is this place; no value for other places.
 std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, const LatticePlace& place) {
   const auto faces = faces_of(lattice.family);
   const auto corners = corners_of(lattice.family);
@@ -199,7 +199,7 @@ std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, co
   return std::nullopt;
 }
 
-/// Numbers the nodes' slots; nodes outside the lattice keep their own order.
+/// Numbers the slots of the nodes; nodes outside the lattice keep their own order.
 void number_nodes(CurvedLattice& lattice) {
   int beside = lattice.slots, of_lattice = 0;
   for (std::size_t k = 0; k < lattice.nodes.size(); ++k) {
@@ -218,7 +218,7 @@ void number_nodes(CurvedLattice& lattice) {
   lattice.is_complete = of_lattice == lattice.slots;
 }
 
-/// The n for which nodes_of(n) is `nodes`; 0 if there is none.
+/// Returns the n for which nodes_of(n) is `nodes`; 0 if there is none.
 template <class NodesOf>
 int order_with(std::size_t nodes, const NodesOf& nodes_of) {
   for (std::size_t n = 1; nodes_of(n) <= nodes; ++n)
@@ -233,11 +233,12 @@ CurvedLattice quadratic(CurvedFamily family, int order_t = 2) {
   return lattice;
 }
 
-/// Quadratic cells with a node in the middle of each triangle and, for tets and pyramids, of the cell.
+/// Returns the lattice of quadratic cells with a node in the middle of each triangle and, for tets and pyramids, of the
+/// cell.
 CurvedLattice bubble_lattice(CurvedFamily family) {
   CurvedLattice lattice = quadratic(family);
   lattice.has_bubbles = true;
-  lattice.refined = family == CurvedFamily::pyramid ? 12 : 6;  // divides the cell into halves, thirds and quarters
+  lattice.refined = family == CurvedFamily::pyramid ? 12 : 6;  // a multiple of 2 and 3, for pyramids also of 4
   Numbering numbering(lattice);
   numbering.add_corners();
   const auto refine = [&] {
@@ -270,7 +271,8 @@ CurvedLattice bubble_lattice(CurvedFamily family) {
   return lattice;
 }
 
-/// VTK's quadratic cells, whose mid-edge nodes follow another order of edges than in its higher-order cells.
+/// Returns the lattice of VTK's quadratic cells, whose mid-edge nodes follow another order of edges than those of VTK's
+/// higher-order cells.
 std::optional<CurvedLattice> quadratic_lattice(CellType type) {
   static constexpr Edge hexahedron_rounds[] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
                                                {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
@@ -316,13 +318,13 @@ std::optional<CurvedLattice> quadratic_lattice(CellType type) {
   }
 }
 
-/// Second-order cells that VTK does not have, identified by their numbers of nodes.
+/// Returns the lattice of second-order cells that VTK does not have, which are identified by their numbers of nodes.
 std::optional<CurvedLattice> incomplete_lattice(CellType type, std::size_t nodes) {
   struct Row {
     CellType type;
     std::size_t nodes;
     CurvedFamily family;
-    std::size_t first, from, to;  ///< the first nodes of a complete cell, then [from, to)
+    std::size_t first, from, to;  ///< the cell has the first nodes of a complete cell, then those in [from, to)
   };
   static constexpr Row rows[] = {{CellType::lagrange_tetrahedron, 5, CurvedFamily::tet, 4, 14, 15},
                                  {CellType::lagrange_tetrahedron, 7, CurvedFamily::tet, 7, 0, 0},
@@ -360,7 +362,7 @@ std::optional<CurvedLattice> lagrange_lattice(CellType type, std::size_t nodes, 
   if (type == CellType::lagrange_wedge && nodes == 21 && degrees[2] <= 2) return bubble_lattice(CurvedFamily::wedge);
   const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0 &&
                      (type == CellType::lagrange_hexahedron || type == CellType::lagrange_wedge);
-  constexpr int highest = 100;  // limit: 10^6 nodes per cell
+  constexpr int highest = 100;  // limit of the order, 10^6 nodes per cell
   if (given) {
     if (std::max({degrees[0], degrees[1], degrees[2]}) > highest) return std::nullopt;
     const std::size_t p = static_cast<std::size_t>(degrees[0]) + 1, q = static_cast<std::size_t>(degrees[1]) + 1,
@@ -393,7 +395,7 @@ std::optional<CurvedLattice> lagrange_lattice(CellType type, std::size_t nodes, 
   return lattice.nodes.empty() ? std::nullopt : std::optional(std::move(lattice));
 }
 
-/// Third-order cells that have only the first nodes of their lattice: those of edges, or of edges and faces.
+/// Returns the lattice of third-order cells that have only the first nodes: those of edges, or of edges and faces.
 std::optional<CurvedLattice> incomplete_cubic_lattice(CellType type, std::size_t nodes) {
   struct Row {
     CellType type;
@@ -412,7 +414,7 @@ std::optional<CurvedLattice> incomplete_cubic_lattice(CellType type, std::size_t
   return std::nullopt;
 }
 
-/// Lattice of Bezier cells: the same as for Lagrange.
+/// Returns the lattice of Bezier cells, which is that of Lagrange cells.
 std::optional<CurvedLattice> bezier_lattice(CellType type, std::size_t nodes, const std::array<int, 3>& degrees) {
   if (type < CellType::bezier_tetrahedron || type > CellType::bezier_wedge) return std::nullopt;
   const CellType lagrange = type == CellType::bezier_tetrahedron  ? CellType::lagrange_tetrahedron

@@ -23,10 +23,10 @@ namespace tessera::cells {
 /// pyramid     r and s <= 1 - t; not VTK's cube, so that its faces are the triangles of its neighbours
 enum class CurvedFamily : std::uint8_t { tet, hexahedron, wedge, pyramid };
 
-/// A place of the lattice on which a cell has nodes: node / order gives (r, s, t).
+/// A place on the lattice of a cell's nodes: its coordinates (r, s, t) are the place divided by the order.
 using LatticePlace = std::array<int, 3>;
 
-/// Number of lattice steps from one place to another along an edge; at least 1.
+/// Returns the number of lattice steps from one place to another along an edge; at least 1.
 inline int steps_between(const LatticePlace& p, const LatticePlace& q) {
   return std::max({1, std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
 }
@@ -35,24 +35,26 @@ inline int steps_between(const LatticePlace& p, const LatticePlace& q) {
 struct CurvedLattice {
   CurvedFamily family = CurvedFamily::tet;
   std::array<int, 3> order{};       ///< along r, s, t; all equal for tets and pyramids, r and s equal for wedges
-  std::vector<LatticePlace> nodes;  ///< per node of the cell, times `refined`; may be fewer than the lattice has
-  std::size_t given = 0;            ///< cells store only this many nodes; the others are computed from them
-  int refined = 1;                  ///< number of steps of `nodes` in one step of the lattice
-  /// Quadratic cells that may also have a node in the middle of a triangle, with a cubic function, and one inside.
+  std::vector<LatticePlace> nodes;  ///< place of each node, in units of 1 / refined; may be fewer than the lattice has
+  std::size_t given = 0;            ///< number of nodes that a cell stores; the others are computed from these
+  int refined = 1;                  ///< number of units of `nodes` in one step of the lattice
+  /// The cell is quadratic, but may also have nodes in the middle of triangles, with cubic functions, and one node
+  /// inside.
   bool has_bubbles = false;
-  bool has_control_points = false;     ///< nodes are coefficients of Bernstein polynomials (Bezier cells)
+  bool has_control_points = false;     ///< nodes are coefficients of Bernstein polynomials, as in Bezier cells
   std::vector<int> slot_of_place;      ///< index of at(place) in the cell's values; -1: not on the lattice
-  std::vector<int> slot_of_node;       ///< the same per node; nodes that are not on the lattice come after it
+  std::vector<int> slot_of_node;       ///< for each node, its index in the cell's values; nodes that are not on the
+                                       ///< lattice follow those that are
   int slots = 0;                       ///< number of the lattice's places
-  int all_slots = 0;                   ///< including nodes that are not on the lattice
-  bool is_complete = true;             ///< every place has a node
+  int all_slots = 0;                   ///< number of values, including those of nodes that are not on the lattice
+  bool is_complete = true;             ///< every place of the lattice has a node
   std::vector<double> pyramid_matrix;  ///< for pyramids: pyramid_matrix() of cells/curved/curved_pyramid.hpp
 
   [[nodiscard]] int slot(const LatticePlace& p) const {
     const auto at = [](int number) { return static_cast<std::size_t>(number); };
     return slot_of_place[(at(p[2]) * at(order[1] + 1) + at(p[1])) * at(order[0] + 1) + at(p[0])];
   }
-  /// Slot of the node in the middle of a triangle, per face of the cell; -1 if there is none.
+  /// For each face of the cell, the slot of the node in the middle if the face is a triangle; -1 if there is none.
   std::array<int, 5> slot_of_middle = {-1, -1, -1, -1, -1};
   int slot_of_inside = -1;  ///< slot of an inner node that is not on the lattice; -1 if there is none
   /// A node's coordinates (r, s, t).
@@ -64,26 +66,27 @@ struct CurvedLattice {
 
 inline constexpr int highest_pyramid_order = 8;
 
-/// The lattice of a cell with one of VTK's types and this number of nodes: 24 to 27, 29, 31, 32, 33, 37, Lagrange
-/// tetrahedra (71; also with 15 nodes), hexahedra (72), wedges (73; also with 21 nodes) and pyramids (74), Bezier
-/// tetrahedra (78), hexahedra (79) and wedges (80). `degrees` are those of VTK's HigherOrderDegrees, or zero: then
-/// hexahedra, and wedges, have one order along all axes; tetrahedra and pyramids ignore them. No value for other types,
-/// or if no such cell has this number of nodes.
+/// Returns the lattice of a cell with one of VTK's types and this number of nodes: 24 to 27, 29, 31, 32, 33, 37,
+/// Lagrange tetrahedra (71; also with 15 nodes), hexahedra (72), wedges (73; also with 21 nodes) and pyramids (74),
+/// Bezier tetrahedra (78), hexahedra (79) and wedges (80). `degrees` are those of VTK's HigherOrderDegrees. If they are
+/// zero, hexahedra and wedges have the same order along all axes. Tetrahedra and pyramids ignore them. No value for
+/// other types, or if cells of the type cannot have this number of nodes.
 ///
-/// Without degrees, Lagrange types also represent second-order cells of other formats that VTK lacks. Their nodes are
-/// some of VTK's, in its order (c: centre, m: all faces' middles, t: triangles' middles, e: all edges): tetrahedra of 5
-/// (c), 7 (the base's edges), 8 (m), 11 (e c) and 14 (e m) nodes, hexahedra of 9 (c), 16 (edges of the base and the
-/// top; linear along t), 21 (e c) and 26 (e m), wedges of 16 (e c) and 20 (e m), pyramids of 18 (e m). Missing nodes
-/// are interpolated from the nodes of their edge or face. The same applies to third-order cells of CGNS and Exodus that
-/// have the first of VTK's nodes: tetrahedra of 16 (all edges), hexahedra of 32 (edges) and 56 (and faces), wedges of
-/// 24 (edges) and 38 (and faces), pyramids of 21 (edges) and 29 (and faces).
+/// Without degrees, Lagrange types also represent second-order cells of other formats that VTK does not have. Their
+/// nodes are some of those of VTK's cells, in VTK's order (c: centre, m: all faces' middles, t: triangles' middles, e:
+/// all edges): tetrahedra of 5 (c), 7 (the base's edges), 8 (m), 11 (e c) and 14 (e m) nodes, hexahedra of 9 (c), 16
+/// (edges of the base and the top; linear along t), 21 (e c) and 26 (e m), wedges of 16 (e c) and 20 (e m), pyramids of
+/// 18 (e m). Missing nodes are interpolated from the nodes of their edge or face. The same applies to third-order cells
+/// of CGNS and Exodus that have only the first of VTK's nodes: tetrahedra of 16 (all edges), hexahedra of 32 (edges)
+/// and 56 (and faces), wedges of 24 (edges) and 38 (and faces), pyramids of 21 (edges) and 29 (and faces).
 ///
 /// Orders  Lagrange tetrahedra, hexahedra and wedges up to 100, pyramids up to 8, Bezier cells up to 12.
-/// Nodes   in VTK's order (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,
-///         vtkHigherOrderWedge.h of 9.1). VTK has no Lagrange pyramids yet. Ours have corners, edges (0 1, 1 2, 3 2, 0
-///         3, 0 4, 1 4, 2 4, 3 4, each from the first), the base row by row along r, the triangles on the base's edges
-///         in their order, row by row from the base up, each row in the direction of the edge, and layers of the inside
-///         from the base up, row by row. For second order this is the only extension of quadratic pyramids.
+/// Nodes   are in VTK's order (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,
+///         vtkHigherOrderWedge.h of 9.1). VTK does not have Lagrange pyramids yet. The order of ours is: corners, edges
+///         (0 1, 1 2, 3 2, 0 3, 0 4, 1 4, 2 4, 3 4, each from the first corner), the base row by row along r, the
+///         triangles on the base's edges in the order of these edges, row by row from the base up, each row in the
+///         direction of the edge, and layers of the inside from the base up, row by row. For second order, no other
+///         order extends that of quadratic pyramids.
 std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees = {});
 

@@ -9,13 +9,14 @@
 namespace tessera::cells {
 namespace {
 
-/// Transfinite interpolation at a place of a quadrilateral's or box's lattice from the values on its sides: the
-/// functions of serendipity cells. `node_at(place)` returns a node's value.
+/// Transfinite interpolation at a place of a quadrilateral's or box's lattice from the values on its sides, which gives
+/// the functions of serendipity cells. `node_at(place)` returns the value of a node.
 template <std::size_t axes, class NodeAt>
 glm::dvec4 between_sides(const std::array<int, axes>& place, const std::array<int, axes>& order,
                          const NodeAt& node_at) {
   glm::dvec4 sum(0);
-  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {  // each axis uses the place, its first or its last
+  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {  // each axis uses the place itself, the axis'
+                                                                      // first place, or its last
     std::array<int, axes> at = place;
     double weight = -1;
     int left = choices;
@@ -30,7 +31,7 @@ glm::dvec4 between_sides(const std::array<int, axes>& place, const std::array<in
   return sum;
 }
 
-/// The middle of a third-order triangle with nodes only on its edges, so that it reproduces all quadratic polynomials.
+/// Returns the middle of a third-order triangle with nodes only on its edges. Reproduces all quadratic polynomials.
 template <class NodeAt>
 glm::dvec4 middle_of_cubic_triangle(const NodeAt& node_at) {
   const glm::dvec4 edges =
@@ -40,7 +41,8 @@ glm::dvec4 middle_of_cubic_triangle(const NodeAt& node_at) {
 
 }  // namespace
 
-/// For second order the middles of edges first; then, for second and third order, the nodes on faces and inside.
+/// For second order, the middles of edges are computed first; then, for second and third order, the nodes on faces and
+/// inside.
 void CurvedCell::add_missing_nodes() {
   std::vector<bool> given(values_.size(), false);
   for (std::size_t k = 0; k < lattice_->given; ++k) given[static_cast<std::size_t>(lattice_->slot_of_node[k])] = true;

@@ -8,8 +8,8 @@
 namespace tessera::cells {
 namespace {
 
-/// Functions shared by VTK's two quadratic pyramids, of x and y from -1 to 1 across at any height, and w from 2 at the
-/// base to 0 at the apex. Returns their number.
+/// Evaluates the functions that VTK's two quadratic pyramids share. x and y are from -1 to 1 across the pyramid at any
+/// height; w is from 2 at the base to 0 at the apex. Returns the number of functions.
 std::size_t quadratic_functions(double x, double y, double w, std::span<double> out) {
   const double ww = w * w;
   const std::array<double, 11> values = {1,      w,      ww,         x * w,          y * w,         x * y * w,
@@ -18,7 +18,7 @@ std::size_t quadratic_functions(double x, double y, double w, std::span<double> 
   return values.size();
 }
 
-/// Legendre polynomials of degree 0 to n.
+/// Evaluates the Legendre polynomials of degree 0 to n.
 void legendre(int n, double x, std::span<double> out) {
   out[0] = 1;
   if (n > 0) out[1] = x;
@@ -28,7 +28,7 @@ void legendre(int n, double x, std::span<double> out) {
   }
 }
 
-/// Products of degree i across, j across and up to n - max(i, j) along, times height^max(i, j).
+/// Evaluates products of degree i across, j across and up to n - max(i, j) along, times height^max(i, j).
 void lagrange_functions(int n, double x, double y, double height, std::span<double> out) {
   std::array<double, highest_pyramid_order + 1> across_x{}, across_y{}, along{};
   legendre(n, x, across_x), legendre(n, y, across_y), legendre(n, 2 * height - 1, along);

@@ -20,12 +20,13 @@ using scene::Tet;
 constexpr std::array<std::array<int, 2>, 6> edges_of_tet = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 constexpr std::array<std::array<int, 3>, 4> faces_of_tet = {{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// Coefficients on edges are smaller than those inside: by up to 1.5 for a second-degree polynomial written in a higher
-/// degree. Edges within the reduced tolerance avoid inner points, which do not halve anything.
+/// Coefficients on edges are smaller than those inside: by a factor of up to 1.5 for a second-degree polynomial written
+/// in a higher degree. If edges are halved down to the tolerance divided by this factor, inner points, which do not
+/// halve anything, are rarely needed.
 double room_inside(int degree) { return degree <= 2 ? 1 : 1.5; }
 
-/// Rational functions have their largest curvature near one corner, a pyramid's apex: pyramids became three to four
-/// times the tets predicted from their initial edges, which is this to the power of 3/2.
+/// Rational functions have their largest curvature near one corner, the apex of a pyramid. Pyramids became three to
+/// four times the number of tets predicted from their initial edges; three to four is this factor to the power of 3/2.
 constexpr double worst_of_fractions = 2.5;
 
 }  // namespace
@@ -33,7 +34,7 @@ constexpr double worst_of_fractions = 2.5;
 double cost_of_tet(const CurvedLattice& lattice) {
   const auto& n = lattice.order;
   const int degree = std::min(lattice.family == CurvedFamily::tet ? n[0] : n[0] + n[1] + n[2], highest_degree);
-  return std::max((degree + 1) * (degree + 2) * (degree + 3) / 120.0, 1.0);  // cost 1 for 20 coefficients
+  return std::max((degree + 1) * (degree + 2) * (degree + 3) / 120.0, 1.0);  // the cost is 1 for 20 coefficients
 }
 
 void CurvedError::add(const CurvedError& other) {
@@ -93,7 +94,7 @@ void CurvedSplitter::make_net(const Tet& tet) {
   std::array<CellPlace, 4> place;
   for (std::size_t k = 0; k < 4; ++k) place[k] = places_[tet[k]];
   cell_.order(place, 0);
-  std::array<std::size_t, 4> at{};  // the index in the tet of each sorted corner
+  std::array<std::size_t, 4> at{};  // index in the tet of each sorted corner
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t c = 0; c < 4; ++c)
       if (places_[tet[c]] == place[k]) at[k] = c;
@@ -120,7 +121,7 @@ void CurvedSplitter::tally_excess(const CurvedLattice& lattice, std::span<const 
     double worst = 0;
     for (const auto& [a, b] : edges_of_tet)
       worst = std::max<double>(worst, edge(tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]).excess);
-    // Nodes within faces and cells curve the interior even between straight edges.
+    // Nodes within faces and cells can curve the interior even if the edges are straight.
     if (lattice.has_bubbles || worst <= 1) worst = std::max(worst, excess_of(departures(tet)) / room_inside(degree_));
     report(cell_.is_polynomial() ? worst : worst_of_fractions * worst);
   }
@@ -156,7 +157,7 @@ std::span<const glm::dvec4> CurvedSplitter::departures(Corners corners) {
   }
   const std::size_t n = samples_.size();
   coefficients_.assign(n, glm::dvec4(0));
-  for (std::size_t j = 0; j < n; ++j)  // column by column: the sums are independent
+  for (std::size_t j = 0; j < n; ++j)  // computed column by column, so that the sums are independent
     for (std::size_t k = 0; k < n; ++k) coefficients_[k] += form.matrix[j * n + k] * samples_[j];
   if (cell_.has_weights()) {
     const double scale = 1 / least_weight(places, faces, form);
@@ -165,7 +166,8 @@ std::span<const glm::dvec4> CurvedSplitter::departures(Corners corners) {
   return coefficients_;
 }
 
-/// A lower bound of the weights by which the samples of departures() are multiplied: their least coefficient.
+/// Returns a lower bound of the weights by which the samples of departures() are multiplied: the least of their
+/// coefficients.
 double CurvedSplitter::least_weight(std::span<const CellPlace> places, unsigned faces, const BernsteinForm& form) {
   std::array<double, 4> at_corner{};
   double least = std::numeric_limits<double>::infinity();
@@ -219,7 +221,7 @@ CurvedSplitter::Edge& CurvedSplitter::edge(std::uint32_t a, std::uint32_t b) {
   const auto [place, is_new] = edges_.try_emplace(key, Edge{0, none});
   if (!is_new) return place->second;
   const std::array<std::uint32_t, 2> ends = {a, b};
-  // A place that is not a whole number of units cannot be identified by both neighbours.
+  // Neighbours could not both identify a place that is not a whole number of units.
   const CellPlace &p = places_[a], &q = places_[b];
   const bool can_be_halved = ((p[0] + q[0]) | (p[1] + q[1]) | (p[2] + q[2])) % 2 == 0;
   if (can_be_halved) {
@@ -241,7 +243,7 @@ std::uint32_t CurvedSplitter::add_point(const CellPlace& place, unsigned faces) 
   return static_cast<std::uint32_t>(places_.size() - 1);
 }
 
-/// Positions decide between equally bad edges, so that neighbours choose the same one.
+/// If two edges deviate equally, their positions decide, so that neighbours choose the same edge.
 bool CurvedSplitter::halve_worst_edge(const Tet& tet) {
   std::array<std::uint32_t, 2> worst{};
   float excess = 1;
@@ -273,13 +275,13 @@ bool CurvedSplitter::halve_worst_edge(const Tet& tet) {
   const std::size_t first = open_nets_.size(), size = net_->size();
   open_nets_.resize(first + 2 * size);
   const std::span<glm::dvec4> halves(open_nets_);
-  // The first of the two halves has lost corner[0].
+  // The first of the two halves does not contain corner[0].
   net_->halve(tet_net_, corner[1], corner[0], halves.subspan(first, size), halves.subspan(first + size, size));
   return true;
 }
 
-/// A point inside a triangle or tet; `none` if there is none on whole units. For a triangle both neighbours get the
-/// same point.
+/// Adds a point inside a triangle or tet and returns its number; `none` if no such point has whole units. For a
+/// triangle, both neighbours get the same point.
 std::uint32_t CurvedSplitter::point_within(Corners corners) {
   const unsigned faces = faces_on(corners);
   std::array<CellPlace, 4> place;
@@ -305,16 +307,16 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
   const std::span<const glm::dvec4> inside = net_departures(tet);
   tet_error_ = error_of(inside);
   if (cell_.degree_on(faces_on(tet)) < 3) return false;  // all coefficients belong to edges
-  // It is NaN where coordinates are too large to be squared: then no point is nearer.
+  // The result is NaN if coordinates are too large to be squared; then no point would reduce it.
   const double excess = excess_of(inside);
   if (!(excess > 0)) return false;
   for (const auto& [i, j, k] : faces_of_tet) {
     const std::array<std::uint32_t, 3> face = {tet[static_cast<std::size_t>(i)], tet[static_cast<std::size_t>(j)],
                                                tet[static_cast<std::size_t>(k)]};
     const int degree = cell_.degree_on(faces_on(face));
-    // A face's coefficients are among the tet's if both have the same degree: if these are all good by more than
-    // rounding, the face is good too, from either side. With a lower degree the face's coefficients are larger than the
-    // tet's.
+    // If both have the same degree, the coefficients of a face are among those of the tet. If all of these are below
+    // the tolerance by more than rounding, the face is, too, from either side. If the face has a lower degree, its
+    // coefficients are larger than the tet's.
     if (degree < 3 || (excess <= 0.9 && nets_are_exact_ && degree == degree_)) continue;
     if (!(excess_of(departures(face)) > 1)) continue;
     const std::uint32_t point = point_within(face);
@@ -337,8 +339,8 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
   return true;
 }
 
-/// The field's gradient in space at a corner of the current tet, from its coefficients next to the corner, which are
-/// the derivatives along its edges. Zero where space is folded.
+/// Returns the gradient of the field in space at a corner of the current tet. It is computed from the coefficients next
+/// to the corner, which are the derivatives along the tet's edges. Zero where space is folded.
 glm::dvec3 CurvedSplitter::gradient_at(std::size_t corner) const {
   const glm::dvec4& here = tet_net_[net_->corner(corner)];
   std::array<glm::dvec4, 3> along;
@@ -357,8 +359,9 @@ glm::dvec3 CurvedSplitter::gradient_at(std::size_t corner) const {
   return is_finite ? gradient : glm::dvec3(0);
 }
 
-/// At a fixed point in space, the field's error is its error at a fixed place of the cell minus its slope times the
-/// displacement of the place. Slopes are the cell's own: those of a thin tet do not represent its surroundings.
+/// At a fixed point in space, the error of the field is its error at a fixed place of the cell minus the slope of the
+/// field times the displacement of the place. The slopes are those of the cell, because those of a thin tet do not
+/// represent its surroundings.
 CurvedError CurvedSplitter::error_of(std::span<const glm::dvec4> departures) const {
   CurvedError error;
   for (const glm::dvec4& d : departures) error.position = std::max(error.position, d.x * d.x + d.y * d.y + d.z * d.z);

@@ -15,14 +15,14 @@ namespace {
 constexpr scene::Box no_box{glm::dvec3(std::numeric_limits<double>::infinity()),
                             glm::dvec3(-std::numeric_limits<double>::infinity())};
 
-/// A position error, relative to the diagonal, changes pixels at rays along a surface some four times as much as the
-/// same error of the field relative to its range: for a block of quadratic hexahedra, a quarter takes the fewest tets
-/// for a given error.
+/// An error of the position, relative to the diagonal, changes pixels at rays along a surface about four times as much
+/// as the same error of the field relative to its range. For a block of quadratic hexahedra, a quarter needs the fewest
+/// tets for a given error.
 constexpr double position_share = 0.25;
 
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// Estimated number of tets that an initial tet of a bin becomes with a tolerance 2^(step/2) times as large.
+/// Estimates the number of tets that an initial tet of a bin becomes if the tolerance is 2^(step/2) times as large.
 double tets_of(std::size_t bin, std::size_t step) {
   const double excess = std::exp2((static_cast<double>(bin) + 0.5 - static_cast<double>(step)) / 2);
   return bin <= step ? 1 : excess * std::sqrt(excess);
@@ -46,7 +46,7 @@ void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choi
   }
 }
 
-/// A node has up to eight cells of six tets around it, and a folded cell takes about eight times the predicted tets.
+/// Up to eight cells of six tets each meet at a node, and a folded cell takes about eight times the predicted tets.
 bool may_take_too_many(const ReadOptions& options, const HigherOrderPlan& plan, const ExcessTally& tally) {
   std::size_t worst = tally.size() - 1;
   while (worst > 0 && tally[worst] == 0) --worst;
@@ -93,7 +93,7 @@ CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box
     return s.name == choice.name && s.association == choice.association;
   });
   if (summary == fields.end() || choice.association != scene::Association::point) return asked;
-  // For one component of a vector, the range of the lengths only bounds its absolute value.
+  // For one component of a vector, only a bound of the absolute value is known: the range of the lengths.
   const double range =
       summary->components > 1 && choice.component != magnitude ? 2 * summary->high : summary->high - summary->low;
   if (range > 0) asked.tolerance.field = options.higher_order_tolerance * range;
@@ -113,7 +113,7 @@ ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& c
 
 std::uint64_t usual_tets(const ExcessTally& tally) {
   constexpr double least = 1 << 18, most = 1 << 21;
-  std::uint64_t outliers = 48;  // eight hexahedra with six tets each meet at a node
+  std::uint64_t outliers = 48;  // eight hexahedra of six tets each meet at a node
   double tets = 0, first = 0;
   for (std::size_t bin = tally.size(); bin-- > 0;) {
     const std::uint64_t left_out = std::min(outliers, tally[bin]);
@@ -144,7 +144,7 @@ HigherOrderPlan planned(const ReadOptions& options, const CurvedSettings& asked,
   plan.settings.tolerance.position *= factor;
   plan.settings.tolerance.field *= factor;
   // The plan predicts the number of tets within a factor of three, except for the folded cells of a damaged file.
-  // Unless the user chose the number, twice as many must be enough.
+  // Unless the user chose the number, twice the predicted number must be enough.
   plan.settings.limit = std::max<std::size_t>(most / 2 * 3, 1 << 16);
   const std::uint64_t all = std::max(std::min(most, unlimited / 8) * 3, std::uint64_t{1} << 17);
   plan.settings.all = is_chosen ? all : std::min(all, std::max(2 * most, std::uint64_t{1} << 22));

@@ -14,39 +14,40 @@
 
 namespace tessera::cells {
 
-/// Histogram of the deviation of higher-order cells' initial tets: bin b counts tets whose edges deviate by 2^(b/2)
-/// tolerances; the first bin includes smaller deviations. Bins of several parts add up.
+/// Histogram of the deviations of higher-order cells' initial tets. Bin b counts tets whose edges deviate by 2^(b/2)
+/// tolerances; the first bin also counts smaller deviations. The histograms of parts of a mesh can be added.
 using ExcessTally = std::array<std::uint64_t, 128>;
 
-/// The box of the points of blocks with higher-order cells; low > high if there are none.
+/// Returns the box of the points of blocks with higher-order cells; low > high if there are none.
 scene::Box higher_order_box(std::span<const CellBlock> blocks);
 scene::Box joined(const scene::Box& a, const scene::Box& b);
 
-/// The settings requested for a mesh: the tolerance in the mesh's units, from its box and its field's range.
+/// Returns the settings requested for a mesh. The tolerance is in the units of the mesh, computed from its box and the
+/// range of its field.
 CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box, const FieldChoice& choice,
                                std::span<const FieldSummary> fields);
 
-/// Deviations of the higher-order cells of some blocks, in tolerances of `asked`.
+/// Tallies the deviations of the higher-order cells of some blocks, in tolerances of `asked`.
 ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& asked);
 
-/// Approximate default limit of a mesh's tets: 2^18 plus twice the number required without the worst 48 of its initial
-/// tets, but at most 2^21 or four times the initial number, whichever is more. A damaged node may be so far away that
-/// the cells around it use the whole limit.
+/// Returns the approximate default limit of the number of a mesh's tets. It is 2^18 plus twice the number of tets that
+/// are required if the worst 48 of the initial tets are ignored, but at most the larger of 2^21 and four times the
+/// initial number. 48 tets may meet at one damaged node, which may be so far away that they use the whole limit.
 std::uint64_t usual_tets(const ExcessTally& tally);
 
-/// The factor, a power of the square root of 2, by which the tolerance must grow so that no more than about `most_tets`
-/// are made. The error decreases with the square of a tet's size.
+/// Returns the factor, a power of the square root of 2, by which the tolerance must grow so that at most about
+/// `most_tets` tets are made. The error decreases with the square of a tet's size.
 double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets);
 
-/// The complete plan for a mesh that is not in parts.
+/// The complete plan for a mesh that is read as a whole.
 struct HigherOrderPlan {
   CurvedSettings settings;
-  double tolerance = 0;  ///< relative, like ReadOptions::higher_order_tolerance
+  double tolerance = 0;  ///< relative tolerance, like ReadOptions::higher_order_tolerance
 };
 HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const ReadOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields);
 
-/// The same, from the results of the parts of a mesh.
+/// Returns the plan for a mesh in parts, given the combined results of all parts.
 HigherOrderPlan planned(const ReadOptions& options, const CurvedSettings& asked, const ExcessTally& tally);
 
 }  // namespace tessera::cells

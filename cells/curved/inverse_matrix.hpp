@@ -8,8 +8,8 @@
 
 namespace tessera::cells {
 
-/// The inverse of a non-singular matrix of n rows, stored row by row: Gauss-Jordan elimination with partial pivoting,
-/// in long double.
+/// Returns the inverse of a non-singular matrix of n rows, stored row by row, by Gauss-Jordan elimination with partial
+/// pivoting in long double.
 inline std::vector<double> inverse_matrix(std::vector<long double> a, std::size_t n) {
   std::vector<long double> b(n * n, 0);
   for (std::size_t i = 0; i < n; ++i) b[i * n + i] = 1;

@@ -52,7 +52,7 @@ constexpr std::array<std::uint8_t, 15> tet15_with_centre_last = {0, 1, 2, 3, 4, 
 constexpr std::array<std::uint8_t, 21> ioss_wedge21 = {0,  1, 2,  3,  4,  5,  6,  7,  8,  12, 13,
                                                        14, 9, 10, 11, 15, 16, 20, 18, 19, 17};
 
-/// For cells that have only the first nodes of another.
+/// Node orders of cells that have only the first nodes of another cell.
 template <std::size_t all>
 constexpr std::span<const std::uint8_t> first_of(const std::array<std::uint8_t, all>& order, std::size_t nodes) {
   return std::span(order).first(nodes);

@@ -35,37 +35,37 @@ namespace tessera::cells {
 /// PLOT3D, SU2 and Tecplot have only linear cells here.
 enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran, tetgen };
 
-/// One cell type of a format, identified by its shape and its number of nodes.
+/// The node order of one cell type of a format. Shape and number of nodes identify the cell type.
 struct NodeOrder {
   NodeConvention convention;
   CurvedFamily shape;
   std::uint8_t nodes;
-  CellType type;  ///< as in curved_lattice(), or a linear type
-  /// For each of VTK's nodes, its index in the format's list, from 0; empty: identical order.
+  CellType type;  ///< a type of curved_lattice(), or a linear type
+  /// For each of VTK's nodes, its index in the format's list, from 0. Empty if both orders are identical.
   std::span<const std::uint8_t> from;
 };
 
-/// Null for cells that the format does not have, or that are not divided here.
+/// Returns null for cells that the format does not have, or that are not divided here.
 const NodeOrder* find_node_order(NodeConvention convention, CurvedFamily shape, std::size_t nodes);
 
-/// All rows, for tests.
+/// Returns all node orders, for tests.
 std::span<const NodeOrder> all_node_orders();
 
-/// Reorders one cell's nodes from the format's order to VTK's. `nodes` has as many as the row.
+/// Reorders the nodes of one cell from the format's order to VTK's. `nodes` has as many entries as `order`.
 void to_vtk_order(const NodeOrder& order, std::span<std::uint32_t> nodes);
 
-/// Exodus' tetrahedra of 15 nodes as in the library's side sets and Ioss: the inner node comes last, not before those
-/// of the faces as in the manual. Files of both kinds exist.
+/// The order of Exodus' tetrahedra of 15 nodes in the library's side sets and in Ioss: the inner node is last, while in
+/// the manual it precedes the nodes of the faces. There are files with either order.
 const NodeOrder& exodus_tet15_with_centre_last();
 
-/// Exodus' wedges of 21 nodes as in Ioss_Wedge21: the nodes of the triangles precede the inner node. In the manual and
-/// the library's side sets, the inner node is first.
+/// The order of Exodus' wedges of 21 nodes in Ioss_Wedge21: the nodes of the triangles precede the inner node. In the
+/// manual and the library's side sets, the inner node is first.
 const NodeOrder& exodus_wedge21_of_ioss();
 
-/// VTK 8 and VTK XML files before version 2.1 have the nodes of the last two edges of a Lagrange hexahedron in the
-/// opposite order (3-7 before 2-6). Exchanges them in either direction. `degrees` are those of VTK's
-/// HigherOrderDegrees, or zero: then one degree along all axes, and cells that do not have (n + 1)^3 nodes are left
-/// unchanged.
+/// In VTK 8 and in VTK XML files before version 2.1, the nodes of the last two edges of a Lagrange hexahedron are in
+/// the opposite order (3-7 before 2-6). This function exchanges them, from either order to the other. `degrees` are
+/// those of VTK's HigherOrderDegrees. If they are zero, the cell has one degree along all axes, and cells that do not
+/// have (n + 1)^3 nodes are left unchanged.
 void exchange_vtk8_edges(std::span<std::uint32_t> nodes, const std::array<int, 3>& degrees = {});
 void exchange_vtk8_edges(std::span<long long> nodes, const std::array<int, 3>& degrees = {});  ///< vtkIdType
 
