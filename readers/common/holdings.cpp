@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t tuples_at_once = 1 << 16;
 
-/// Reads a field's doubles in tuples.
+/// Reads the doubles of a field, in tuples.
 void read_field(const cells::BlockField& field, std::uint64_t first, std::uint64_t count, std::byte* out) {
   const auto components = static_cast<std::size_t>(field.components);
   std::vector<double> plane(std::min<std::size_t>(count, tuples_at_once));

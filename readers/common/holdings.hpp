@@ -17,20 +17,20 @@ namespace tessera::readers {
 /// The arrays of the opened files, until they are taken or dropped.
 class Holdings {
  public:
-  /// Copies tuples [first, first + count) to `out`.
+  /// Copies tuples [first, first + count) of an array to `out`.
   using Read = std::function<void(std::uint64_t first, std::uint64_t count, std::byte* out)>;
   struct Held {
     io::ForeignArray array;
     Read read;
   };
 
-  /// Numbers the array and stores the function that reads it.
+  /// Adds an array: assigns its number and stores the function that reads it.
   io::ForeignArray hold(io::ForeignArray array, Read read);
 
-  /// Holds numbers that stay in memory during the lifetime of `owner`.
+  /// Adds an array whose numbers stay in memory during the lifetime of `owner`.
   io::ForeignArray hold(io::ForeignArray array, const void* numbers, std::shared_ptr<const void> owner);
 
-  /// Null if no array has this number.
+  /// Returns the array with this number; null if there is none.
   [[nodiscard]] const Held* find(std::uint64_t number) const;
   void drop(std::uint64_t number) { held_.erase(number); }
 
@@ -39,7 +39,7 @@ class Holdings {
   std::uint64_t next_ = 0;
 };
 
-/// Takes ownership of a vector's numbers, which determine the number of tuples.
+/// Adds an array that takes ownership of a vector's numbers; their count determines the number of tuples.
 template <class T>
 io::ForeignArray hold_vector(Holdings& holdings, io::ForeignArray array, std::vector<T> numbers) {
   array.tuples = numbers.size() * sizeof(T) / (static_cast<std::size_t>(array.components) * io::size_of(array.type));
@@ -48,7 +48,8 @@ io::ForeignArray hold_vector(Holdings& holdings, io::ForeignArray array, std::ve
   return holdings.hold(std::move(array), start, std::move(kept));
 }
 
-/// Holds a block created by a reader. Its fields are read on demand, twice: once for their ranges.
+/// Adds the arrays of a block that a reader created. Fields are read on demand, and twice: the first time for their
+/// ranges.
 io::ForeignPart hold_block(Holdings& holdings, cells::CellBlock block);
 
 }  // namespace tessera::readers

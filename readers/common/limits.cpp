@@ -27,7 +27,7 @@ double processor_seconds() {
   return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec);
 }
 
-/// False if the hard limit of this process is lower.
+/// Sets a soft limit of this process. Returns false if the hard limit is lower.
 bool set_soft_limit(decltype(RLIMIT_AS) what, std::uint64_t value) {
   rlimit limit{};
   if (::getrlimit(what, &limit) != 0) return true;
@@ -36,25 +36,25 @@ bool set_soft_limit(decltype(RLIMIT_AS) what, std::uint64_t value) {
   return limit.rlim_cur == value;
 }
 
-/// For the last file.
+/// Whether the last file got all the memory that allow() requested.
 bool had_enough_memory = true;
 
-/// Whether its content may be a thousand times larger.
+/// Whether the content of a file may be a thousand times larger than the file.
 bool may_be_compressed(const std::filesystem::path& file) {
   const std::string beginning = io::read_beginning(file, 4096);
   return beginning.find("compressor=") != std::string::npos || beginning.find("\x89HDF\r\n") != std::string::npos ||
          beginning.starts_with("\x1f\x8b");
 }
 
-/// Allows more of both than is in use.
+/// Allows more memory and time than are in use.
 void allow(std::uint64_t bytes, double seconds) {
   // Sanitizers reserve most of the address space.
   if (!is_sanitized) had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + bytes);
   set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
 }
 
-// Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate's best ratio is 1032
-// to 1.
+// Text of one digit and a blank becomes a double and an index, and readers may have two copies of these. The best ratio
+// of deflate is 1032 to 1.
 constexpr double text_factor = 24, packed_factor = 1100;
 constexpr std::uint64_t base_bytes = 256ull << 20;
 // Slow readers parse 2 MB/s of text; compressed files take ten times as long.
@@ -71,7 +71,7 @@ void allow_for_bytes(std::uint64_t size, bool is_compressed) {
 
 void allow_for(const std::filesystem::path& file) {
   if (!io::is_inflated(file)) return allow_for_bytes(io::require_file(file), may_be_compressed(file));
-  // As for its content, but together with that no more than for a compressed file of its own size.
+  // The limit is that for the content, but the total is at most that for a compressed file of the same size.
   const double held = static_cast<double>(io::require_file(file)), packed = static_cast<double>(io::packed_size(file));
   const double bytes = std::max(std::min(text_factor * held, packed_factor * packed - held), 2 * held);
   allow(base_bytes + static_cast<std::uint64_t>(bytes), base_seconds + held / text_bytes_a_second);
@@ -101,9 +101,9 @@ void allow_for_folder(const std::filesystem::path& folder, bool is_compressed) {
 }
 
 void allow_filling(std::size_t facets, double tets, bool is_chosen) {
-  // Measured on spheres: at most 6 KiB a facet; 0.2 ms up to 330,000 facets, over 0.6 ms at 10^6; 1 KiB and 0.02 ms a
-  // tet. A damaged surface may have slivers that use any amount, so the limit is twice the need of sound surfaces plus
-  // 256 MiB.
+  // Measured on spheres: at most 6 KiB per facet; 0.2 ms per facet up to 330,000 facets, over 0.6 ms at 10^6; 1 KiB and
+  // 0.02 ms per tet. A damaged surface may have slivers that use any amount. The limit is therefore twice the amount
+  // that sound surfaces need plus 256 MiB.
   constexpr double base = 256 << 20;
   const double bytes = base + 12288.0 * static_cast<double>(facets), seconds = 15 + 4e-3 * static_cast<double>(facets);
   if (!is_chosen) return allow(static_cast<std::uint64_t>(bytes), seconds);

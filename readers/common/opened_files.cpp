@@ -34,7 +34,7 @@ void note(int descriptor, const char* name) {
   errno = error;
 }
 
-/// The C library's function.
+/// Returns the C library's function of this name.
 template <class Function>
 Function* c_library(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
@@ -50,7 +50,7 @@ int open_noted(const char* name, int flags, mode_t mode) {
 int open_at_noted(int folder, const char* name, int flags, mode_t mode) {
   static auto* const open = c_library<int(int, const char*, int, ...)>("openat64");
   const int descriptor = open(folder, name, flags, mode);
-  if (folder == AT_FDCWD || *name == '/') note(descriptor, name);  // directory listings open entries by descriptor
+  if (folder == AT_FDCWD || *name == '/') note(descriptor, name);  // listings open entries by descriptor
   return descriptor;
 }
 

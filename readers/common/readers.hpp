@@ -12,59 +12,62 @@
 #include "readers/common/holdings.hpp"
 #include "scene/error.hpp"
 
-/// The readers of the helper, each with the options of a request in addition to its file. All throw Error(bad_input) in
-/// one line.
+/// The readers of the helper. Each takes a file and the options of a request. All throw Error(bad_input) with a message
+/// of one line.
 namespace tessera::readers {
 
-/// VTK's XML files except unstructured grids in pieces; `type` is that of <VTKFile>. The pieces of other data sets must
-/// fill the whole.
+/// Reads VTK's XML files, except unstructured grids in pieces. `type` of the request is that of <VTKFile>. The pieces
+/// of other data sets must fill the whole extent.
 io::ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// Legacy VTK, with all arrays.
+/// Reads legacy VTK files, with all arrays.
 io::ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file,
                                     const nlohmann::json& request);
 
-/// VTK's XML HyperTreeGrids: the leaves that no mask hides. A file without leaves has no part.
+/// Reads VTK's XML HyperTreeGrids: the leaves that no mask hides. A file without leaves gives no part.
 io::ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path& file,
                                      const nlohmann::json& request);
 
-/// PLOT3D; `q` is the solution file or empty, the other options are the layout (io/mesh/plot3d_layout.hpp).
+/// Reads PLOT3D. In the request, `q` is the solution file or empty; the other options are the layout
+/// (io/mesh/plot3d_layout.hpp).
 io::ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// STL surfaces.
 io::ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// VTK surfaces, XML or legacy; strips become triangles after the other polygons.
+/// Reads VTK surfaces, XML or legacy. Strips become triangles, which follow the other polygons.
 io::ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path& file,
                                      const nlohmann::json& request);
 
-/// Exodus II: all element blocks, nodal and element variables at `time_step`, counted from 0, or the last one. Nodes
-/// keep their original positions. Variables NAME_x NAME_y NAME_z become one vector NAME.
+/// Reads Exodus II: all element blocks, and the nodal and element variables at `time_step`, counted from 0, or the last
+/// step. Nodes keep their original positions. Variables NAME_x NAME_y NAME_z become one vector NAME.
 io::ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// A grid of NetCDF variables of three dimensions, by the CF conventions if the file follows them: rectilinear axes
-/// unchanged (also degrees), else hexahedra. Reads the grid that has `field`, else the one with the most variables;
-/// `time_step` as for Exodus; missing values are NaN. With `look` only the kind of grid.
+/// Reads a grid of NetCDF variables of three dimensions, using the CF conventions if the file follows them. Rectilinear
+/// axes are kept, even if they are in degrees; other grids become hexahedra. Reads the grid that has `field`, otherwise
+/// the one with the most variables; `time_step` is as for Exodus. Missing values become NaN. With `look`, reports only
+/// the kind of grid.
 io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// Whether a file that NetCDF's library can open has such a grid.
+/// Whether a file that NetCDF's library can open has a grid that read_netcdf() reads.
 bool holds_netcdf_grid(const std::filesystem::path& file);
 
-/// MINC 1, `time_step` as for Exodus; real values, in the space of the direction cosines.
+/// Reads MINC 1, with `time_step` as for Exodus: real values, in the space of the direction cosines.
 io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// The same for MINC 2. In a build without MINC's library (CMake option TESSERA_MINC) it throws Error(bad_input).
+/// Reads MINC 2 like read_minc(). In a build without MINC's library (CMake option TESSERA_MINC) it throws
+/// Error(bad_input).
 io::ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// HDF5, by its content: Exodus, CGNS, FLASH, VTKHDF, MINC 2, or a grid as in read_netcdf(). With `look` only the kind
-/// of a grid, and nothing for others.
+/// Reads HDF5, whose content determines the kind of file: Exodus, CGNS, FLASH, VTKHDF, MINC 2, or a grid as in
+/// read_netcdf(). With `look`, reports only the kind of a grid, and nothing for other files.
 io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// OpenFOAM: the case that is a directory or contains a file, which may be empty. Reconstructed or decomposed by
-/// processors.
+/// Reads an OpenFOAM case, reconstructed or decomposed by processors. `file` is the directory of the case, or a file in
+/// it, which may be empty.
 io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// EnSight 6 and Gold, by the .case file.
+/// Reads EnSight 6 and Gold, given the .case file.
 io::ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 io::ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
@@ -73,7 +76,7 @@ io::ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path
 io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 io::ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// FLASH, an HDF5 file, and Enzo, by its .hierarchy or .boundary: blocks of all levels, with cell data.
+/// Read FLASH, an HDF5 file, and Enzo, given its .hierarchy or .boundary: the blocks of all levels, with cell data.
 io::ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 io::ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
@@ -83,17 +86,18 @@ io::ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path
 /// Raises the limits of memory and time for a file that is about to be read.
 void allow_for(const std::filesystem::path& file);
 
-/// The same for several files together.
+/// Raises the limits of memory and time for several files that are read together.
 void allow_for_files(std::span<const std::filesystem::path> files);
 
-/// The same for all files in a directory tree, for formats of many files.
+/// Raises the limits of memory and time for all files in a directory tree, for formats that consist of many files.
 void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = false);
 
-/// The same for filling a surface of `facets` facets with about `tets` tets; more if the user chose their number.
+/// Raises the limits of memory and time for filling a surface of `facets` facets with about `tets` tets. The limits are
+/// higher if the user chose that number.
 void allow_filling(std::size_t facets, double tets, bool is_chosen);
 
-/// The error if memory runs out: the file's counts may be wrong if it had all memory that its size can explain;
-/// otherwise the machine is too small.
+/// Returns the error if memory runs out. If the process had as much memory as the size of the file can explain, the
+/// file's counts may be wrong; otherwise the machine is too small.
 scene::Error memory_error(const std::string& source,
                           std::string_view damage =
                               "it asks for more memory than a file of its size can need; its "

@@ -28,7 +28,7 @@ constexpr std::uint32_t architecture = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t architecture = AUDIT_ARCH_AARCH64;
 #endif
 
-/// Refused with any arguments. Old calls that newer architectures lack are left out there.
+/// Calls that are refused whatever their arguments. Old calls are left out on newer architectures that lack them.
 constexpr std::array refused = {
 #ifdef SYS_creat
     SYS_creat,
@@ -91,7 +91,7 @@ constexpr std::array refused = {
 
 constexpr std::uint32_t refusal = SECCOMP_RET_ERRNO | EACCES, unknown_call = SECCOMP_RET_ERRNO | ENOSYS;
 
-/// The filter's instructions in order; each check continues with the next one or jumps to its own result.
+/// The instructions of the filter, in order. Each check either continues with the next one or jumps to its own result.
 class Filter {
  public:
   void load(std::size_t offset) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)); }
@@ -104,7 +104,8 @@ class Filter {
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 1, 0));
     result(value);
   }
-  /// Loads the lower half of an argument if the call has this number; instructions added until end_call() apply to it.
+  /// Loads the lower half of an argument if the system call has this number. Instructions added until end_call() apply
+  /// to that call.
   void begin_call(long number, std::size_t argument) {
     open_ = code_.size();
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(number), 0, 0));
@@ -159,7 +160,7 @@ void give_up_rights(MayFork may_fork) {
   opens(SYS_open, 1);
 #endif
   opens(SYS_openat, 2);
-  // Their flags are in memory, which a filter cannot read; the C library works without these calls.
+  // The flags of these calls are in memory, which a filter cannot read. The C library works without these calls.
 #ifdef SYS_clone3
   filter.result_if_equal(SYS_clone3, unknown_call);
 #endif
@@ -182,7 +183,7 @@ void give_up_rights(MayFork may_fork) {
 }
 
 #else
-void give_up_rights(MayFork /*may_fork*/) {}  // system calls have other numbers or arguments on other systems
+void give_up_rights(MayFork /*may_fork*/) {}  // on other systems, system calls have other numbers or arguments
 #endif
 
 }  // namespace tessera::readers

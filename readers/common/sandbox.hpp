@@ -9,14 +9,14 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// Whether the process may fork (processes of the same program).
+/// Whether the process may fork, which starts processes of the same program only.
 enum class MayFork : bool { no, yes };
 
-/// From here on this process cannot change files, open sockets, start programs or signal other processes: effects of a
-/// damaged or hostile file on a library stay inside it. It may still read.
+/// Makes this process unable to change files, open sockets, start programs or signal other processes, so that a damaged
+/// or hostile file that exploits a library cannot affect anything else. The process may still read files.
 ///
-/// Uses a seccomp filter, which applies to all its threads. A kernel without seccomp is not an error; builds with
-/// sanitizers, which need more rights, have no filter.
+/// Uses a seccomp filter, which applies to all threads of the process. A kernel without seccomp is not an error. Builds
+/// with sanitizers do not install a filter, because sanitizers need more rights.
 void give_up_rights(MayFork may_fork);
 
 }  // namespace tessera::readers

@@ -48,11 +48,11 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
                      fmt::format("it was built without {}", name), "install it as the library");
 }
 
-/// An unnamed file with an array's numbers.
+/// Creates an unnamed file with the numbers of an array.
 system::Descriptor file_of(const Holdings::Held& held) {
   system::Descriptor file(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file.is_open()) throw std::bad_alloc();
-  constexpr std::size_t some_bytes = 1 << 18;  // stays in the processor's cache
+  constexpr std::size_t some_bytes = 1 << 18;  // small enough for the processor's cache
   const std::size_t tuple = held.array.tuple_bytes();
   const std::uint64_t at_once = std::max<std::uint64_t>(some_bytes / tuple, 1);
   std::vector<std::byte> some(std::min(at_once, held.array.tuples) * tuple);
@@ -64,7 +64,7 @@ system::Descriptor file_of(const Holdings::Held& held) {
   return file;
 }
 
-/// Memory of the caller, in slots, which transfers arrays without a file each.
+/// Memory of the caller, divided into slots. Arrays are transferred through it without a file for each.
 class Window {
  public:
   void open(const system::Descriptor& file, std::size_t slot) {
@@ -89,9 +89,9 @@ class Window {
   std::size_t slot_ = 1;
 };
 
-/// Ends this process with its caller, whose end of the socket closes however it ends. Uses a thread that waits for that
-/// instead of PR_SET_PDEATHSIG, which is sent when the thread that started this process ends, even if its process
-/// continues.
+/// Ends this process when its caller ends. A thread waits until the caller's end of the socket closes, which happens
+/// however the caller ends. PR_SET_PDEATHSIG is not used, because it is sent when the thread that started this process
+/// ends, even if the process of that thread continues.
 void end_with_caller() {
   pollfd caller{.fd = socket_to_caller, .events = POLLRDHUP, .revents = 0};
   while (::poll(&caller, 1, -1) < 0 && errno == EINTR) {
@@ -103,7 +103,7 @@ Json error_json(const scene::Error& error) {
   return {{"error", {{"line", error.what()}, {"code", static_cast<int>(error.code())}}}};
 }
 
-/// Answers one request. False if the caller has ended.
+/// Answers one request. Returns false if the caller has ended.
 bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window, const Json& request,
             const system::Descriptor& given) {
   const auto asked = request.at("do").get<std::string>();
@@ -150,7 +150,8 @@ void report_progress(double done) {
   if (const Clock::time_point now = Clock::now(); now - last >= std::chrono::milliseconds(100)) {
     last = now;
     static_cast<void>(
-        io::send_message(socket_to_caller, Json::to_cbor({{"progress", done}})));  // fails if the caller has ended
+        io::send_message(socket_to_caller, Json::to_cbor({{"progress", done}})));  // fails if the caller has ended,
+                                                                                   // which does not matter
   }
 }
 
@@ -167,14 +168,14 @@ void serve(std::span<const Reader> readers, MayFork may_fork) {
   give_up_rights(may_fork);
   try {
     std::thread(end_with_caller).detach();
-  } catch (const std::system_error&) {  // without a thread for it, the process ends after the current request
+  } catch (const std::system_error&) {  // if the thread cannot be created, the process ends after the current request
   }
   Holdings holdings;
   Window window;
   if (!io::send_message(socket_to_caller, Json::to_cbor(Json::object()))) ::_exit(0);
   while (const std::optional<io::HelperMessage> message = io::receive_message(socket_to_caller))
     if (!answer(readers, holdings, window, Json::from_cbor(message->bytes), message->file)) break;
-  ::_exit(0);  // damaged files may have corrupted memory, so destructors are skipped
+  ::_exit(0);  // skips destructors, because damaged files may have corrupted memory
 }
 
 }  // namespace tessera::readers

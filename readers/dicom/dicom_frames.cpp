@@ -17,7 +17,7 @@ std::optional<glm::dvec3> position_in(const gdcm::DataSet& data) {
   return p.size() == 3 ? std::optional(glm::dvec3(p[0], p[1], p[2])) : std::nullopt;
 }
 
-/// Directions of rows and columns as unit vectors.
+/// Returns the directions of rows and columns as unit vectors.
 std::optional<std::array<glm::dvec3, 2>> orientation_in(const gdcm::DataSet& data) {
   const std::vector<double> axes = dicom_numbers(data, 0x0020, 0x0037);
   if (axes.size() != 6) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<std::array<glm::dvec3, 2>> orientation_in(const gdcm::DataSet& dat
   return std::array{glm::normalize(row), glm::normalize(column)};
 }
 
-/// Values of functional groups for frames; `slices_apart` and `thickness` 0: not stated.
+/// Values that functional groups state for frames. `slices_apart` and `thickness` are 0 if they are not stated.
 struct FrameFacts {
   DicomFrame frame;
   bool has_position = false;
@@ -34,7 +34,7 @@ struct FrameFacts {
   double slices_apart = 0, thickness = 0;
 };
 
-/// The first item of a group's sequence within an item.
+/// Returns the first item of a group's sequence within an item.
 std::optional<gdcm::DataSet> group_in(const gdcm::DataSet& groups, std::uint16_t group, std::uint16_t element) {
   std::vector<gdcm::DataSet> items = dicom_items(groups, group, element);
   return items.empty() ? std::nullopt : std::optional(std::move(items.front()));
@@ -48,7 +48,7 @@ void add_measures(const gdcm::DataSet& data, FrameFacts& facts) {
   if (const auto thick = dicom_number(data, 0x0018, 0x0050)) facts.thickness = std::abs(*thick);
 }
 
-/// Sort key of frames at one position.
+/// Returns the key by which frames at one position are sorted.
 std::optional<DicomTime> time_in(const gdcm::DataSet& groups) {
   if (const auto position = group_in(groups, 0x0020, 0x9310))
     if (const auto offset = dicom_double(*position, 0x0020, 0x930d)) return DicomTime{*offset, 1};
@@ -60,7 +60,7 @@ std::optional<DicomTime> time_in(const gdcm::DataSet& groups) {
   return std::nullopt;
 }
 
-/// Adds the values of an item of functional groups, the file's shared ones or a frame's.
+/// Adds the values of an item of functional groups: the file's shared groups, or those of a frame.
 void add_groups(const gdcm::DataSet& groups, FrameFacts& facts) {
   if (const auto plane = group_in(groups, 0x0020, 0x9113))
     if (const auto position = position_in(*plane)) facts.frame.position = *position, facts.has_position = true;
@@ -79,7 +79,7 @@ void add_groups(const gdcm::DataSet& groups, FrameFacts& facts) {
     if (const auto delay = dicom_double(*heart, 0x0020, 0x9153)) facts.frame.time = {*delay, 1e-3};
 }
 
-/// Values that apply to all frames unless they state their own.
+/// Returns the values that apply to all frames unless a frame states its own.
 FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   FrameFacts facts;
   facts.frame.row = slice.row, facts.frame.column = slice.column;
@@ -89,7 +89,7 @@ FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   add_measures(data, facts);
   if (const auto axes = orientation_in(data)) facts.frame.row = (*axes)[0], facts.frame.column = (*axes)[1];
   if (const auto position = position_in(data)) facts.frame.position = *position;
-  // Nuclear medicine has both in the item of a detector.
+  // In nuclear medicine, the item of a detector contains both.
   for (const gdcm::DataSet& detector : dicom_items(data, 0x0054, 0x0022)) {
     if (const auto axes = orientation_in(detector)) facts.frame.row = (*axes)[0], facts.frame.column = (*axes)[1];
     if (const auto position = position_in(detector)) facts.frame.position = *position;
@@ -101,8 +101,8 @@ FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   return facts;
 }
 
-/// RT dose: the distance of each frame from the first along the normal. If the first is not zero, they are positions
-/// along the patient's axis instead.
+/// Sets the positions of RT dose: the distance of each frame from the first along the normal. If the first number is
+/// not zero, the numbers are positions along the patient's axis instead.
 bool set_dose_places(const gdcm::DataSet& data, DicomSlice& slice) {
   const std::vector<double> offsets = dicom_numbers(data, 0x3004, 0x000c);
   if (offsets.size() != slice.each.size()) return false;
@@ -115,15 +115,15 @@ bool set_dose_places(const gdcm::DataSet& data, DicomSlice& slice) {
   return true;
 }
 
-/// Consecutive frames, numbered where nuclear medicine numbers slices; for phases and time slots, one sequence after
-/// the other.
+/// Sets positions of consecutive frames. In nuclear medicine the file numbers the slices; for several phases or time
+/// slots, one sequence follows the other.
 void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSlice& slice) {
   std::vector<std::uint16_t> places = dicom_shorts(data, 0x0054, 0x0080);
   const std::vector<std::uint16_t> slots = dicom_shorts(data, 0x0054, 0x0070),
                                    phases = dicom_shorts(data, 0x0054, 0x0030);
   const std::size_t count = slice.each.size();
   const bool is_listed = places.size() == count;
-  // Several consecutive volumes, whose number the file states.
+  // The frames are those of several consecutive volumes, and the file states how many.
   const double volumes = dicom_number(data, 0x0020, 0x0105).value_or(1);
   const auto parts = static_cast<std::size_t>(std::clamp(volumes, 1.0, static_cast<double>(count)));
   const std::size_t each = !is_listed && count % parts == 0 ? count / parts : count;

@@ -25,7 +25,8 @@ glm::dvec3 vector_of(const nlohmann::json& json) {
   return {v[0], v[1], v[2]};
 }
 
-/// Texts of a header may contain arbitrary bytes, which JSON strings must not.
+/// Converts texts of a header, which may contain arbitrary bytes, to binary values, because JSON strings must not
+/// contain them.
 nlohmann::json binary(const std::string& text) {
   return nlohmann::json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
 }
@@ -115,7 +116,8 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   return s;
 }
 
-/// In the forked process: sends each file's header as its length and CBOR, with length 0 if it is not an image.
+/// Runs in the forked process: sends each file's header as its length and CBOR. A length of 0 means that the file is
+/// not an image.
 [[noreturn]] void send_headers(int to, std::span<const std::filesystem::path> files) {
   for (const std::filesystem::path& file : files) {
     std::vector<std::uint8_t> bytes;
@@ -126,7 +128,7 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   ::_exit(0);
 }
 
-/// Number of files that a forked process has read, or found not to be images.
+/// Reads headers in a forked process. Returns the number of files that it has read, or found not to be images.
 std::size_t read_some(std::span<const std::filesystem::path> files, std::vector<DicomSlice>& slices) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category());
@@ -154,7 +156,7 @@ std::size_t read_some(std::span<const std::filesystem::path> files, std::vector<
 std::vector<DicomSlice> read_dicom_headers(std::span<const std::filesystem::path> files) {
   std::vector<DicomSlice> slices;
   for (std::size_t first = 0; first < files.size();)
-    first += read_some(files.subspan(first), slices) + 1;  // skips the file on which it died, if any
+    first += read_some(files.subspan(first), slices) + 1;  // skips the file at which the process died, if any
   return slices;
 }
 

@@ -9,9 +9,9 @@
 
 namespace tessera::readers {
 
-/// The headers of those files that are DICOM images. GDCM checks much by assertions, which end the process: headers are
-/// read in a process forked from this helper; if that dies, another continues with the next file. A file that makes
-/// GDCM abort counts as not being an image.
+/// Returns the headers of those files that are DICOM images. GDCM checks many conditions by assertions, which end the
+/// process. Headers are therefore read in a process forked from this helper; if that process dies, another one
+/// continues with the next file. A file for which GDCM aborts is treated as if it were not an image.
 std::vector<DicomSlice> read_dicom_headers(std::span<const std::filesystem::path> files);
 
 }  // namespace tessera::readers

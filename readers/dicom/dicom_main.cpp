@@ -26,12 +26,12 @@
 namespace tessera::readers {
 namespace {
 
-/// Notes files that begin like DICOM but are not among the slices, because they may be missing slices.
+/// Adds a note about files that begin like DICOM but are not among the slices, because they may be missing slices.
 void note_left_out(const std::vector<std::filesystem::path>& files, const std::vector<DicomSlice>& slices,
                    std::vector<std::string>& notes) {
   std::size_t count = 0;
   std::string first;
-  auto slice = slices.begin();  // in the order of the files
+  auto slice = slices.begin();  // slices are in the order of the files
   for (const std::filesystem::path& file : files) {
     if (slice != slices.end() && slice->file == file) {
       ++slice;
@@ -44,7 +44,7 @@ void note_left_out(const std::vector<std::filesystem::path>& files, const std::v
                                 count > 1 ? "s" : "", first));
 }
 
-/// Slices in one directory; if it has none, those in its subdirectories.
+/// Returns the slices in one directory or, if there are none, those in its subdirectories.
 std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vector<std::string>& notes) {
   constexpr std::size_t most_files = 200000;
   std::vector<std::filesystem::path> files;
@@ -54,7 +54,7 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   const auto slices_among = [&notes](std::vector<std::filesystem::path>& found) {
     std::erase_if(found, [](const std::filesystem::path& file) {
       std::error_code unknown;
-      // A DICOMDIR is an index of other files.
+      // A DICOMDIR is skipped, because it is an index of other files.
       return !std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) < 132 ||
              file.filename() == "DICOMDIR";
     });

@@ -15,7 +15,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Rounding errors of decimal strings in a header, in millimetres and relative to a step.
+/// Rounding errors of decimal strings in a header: in millimetres, and relative to a step.
 constexpr double same_place = 1e-3, even_enough = 1e-2;
 
 bool same_layout(const DicomSlice& a, const DicomSlice& b) {
@@ -25,7 +25,7 @@ bool same_layout(const DicomSlice& a, const DicomSlice& b) {
          a.has_position == b.has_position && glm::dot(a.row, b.row) > 0.9999 && glm::dot(a.column, b.column) > 0.9999;
 }
 
-/// Groups of slices that may belong to one volume.
+/// Groups the slices that may belong to the same volume.
 std::vector<std::vector<DicomSlice>> groups_of(std::vector<DicomSlice> slices) {
   std::vector<std::vector<DicomSlice>> groups;
   for (DicomSlice& slice : slices) {
@@ -72,7 +72,8 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
   return std::move(*chosen);
 }
 
-/// Splits each multi-frame file into slices; if frames have several directions or spacings, keeps the most frequent.
+/// Splits each multi-frame file into slices. If frames have several directions or spacings, keeps only frames with the
+/// most frequent ones.
 std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::vector<std::string>& notes) {
   if (slices.size() != 1 || slices.front().each.empty()) return slices;
   DicomSlice file = std::move(slices.front());
@@ -102,7 +103,7 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   return std::move(*most);
 }
 
-/// Slices grouped by position along the normal; those at one position sorted by time and number.
+/// Groups slices by position along the normal. Slices at one position are sorted by time and number.
 std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = slices.front().normal();
   const auto place = [&](const DicomSlice& s) {
@@ -112,7 +113,7 @@ std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
     return std::make_tuple(place(a), a.time.value, a.number, a.file) <
            std::make_tuple(place(b), b.time.value, b.number, b.file);
   });
-  // Positions that differ by less than rounding are merged.
+  // Positions that differ by less than the rounding error are merged.
   std::vector<std::vector<DicomSlice>> places;
   double last = 0;
   for (DicomSlice& slice : slices) {
@@ -135,7 +136,8 @@ std::size_t chosen_step(std::optional<std::size_t> requested, std::size_t count,
   return requested.value_or(count - 1);
 }
 
-/// Times in seconds from the first of `count` slices at one position; empty if the files do not state them.
+/// Returns times in seconds relative to the first of `count` slices at one position; empty if the files do not state
+/// them.
 std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t count) {
   std::vector<double> times;
   for (std::size_t k = 0; k < count; ++k) {
@@ -147,7 +149,7 @@ std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t coun
   return times;
 }
 
-/// If slices at one position have several times: the slices of one time.
+/// If slices at one position have several times, returns the slices of one time.
 std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> requested,
                                        const std::string& source, DicomVolume& volume) {
   std::vector<std::vector<DicomSlice>> places = by_place(std::move(slices));
@@ -167,7 +169,7 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
   return chosen;
 }
 
-/// "2 liver, 5 spleen" for the existing numbers.
+/// Returns "2 liver, 5 spleen" for the segments with these numbers.
 std::string names_of(const DicomSegments& segments, const std::vector<std::int64_t>& numbers) {
   constexpr std::size_t most = 12;
   std::string words;
@@ -181,7 +183,7 @@ std::string names_of(const DicomSegments& segments, const std::vector<std::int64
   return words + (numbers.size() > most ? fmt::format(" and {} more", numbers.size() - most) : "");
 }
 
-/// A file may omit frames without samples of a segment: inserts slices of zeros.
+/// Inserts slices of zeros, because a file may omit frames in which a segment has no samples.
 std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const std::string& source) {
   if (slices.size() < 2) return slices;
   const glm::dvec3 along = slices.front().normal();
@@ -217,7 +219,7 @@ std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const 
   return filled;
 }
 
-/// One slice per position: for labels from all frames, for fractions from those of the chosen segment.
+/// Returns one slice per position: for labels combined from all frames, for fractions from those of the chosen segment.
 std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::optional<std::size_t> requested,
                                            const std::string& source, DicomVolume& volume) {
   const DicomSegments segments = frames.front().segments;
@@ -268,7 +270,7 @@ void set_places(DicomVolume& volume) {
   const auto [least, most] = std::minmax_element(gaps.begin(), gaps.end());
   volume.steps[2] = mean;
   if (*most - *least > even_enough * usual) {
-    // Along the line from the first slice to the last.
+    // The direction is that of the line from the first slice to the last.
     volume.steps[2] = whole / glm::length(whole);
     for (double& place : places) place *= glm::length(whole) / height;
     volume.places = std::move(places);

@@ -15,17 +15,17 @@ namespace tessera::readers {
 struct DicomVolume {
   std::vector<DicomSlice> slices;  ///< one per position
   glm::dvec3 origin{0};            ///< position of the first sample
-  /// One step of the index along the samples of a row, along rows, and along slices; if slices are not uniform the last
-  /// has length one.
+  /// The steps from one sample to the next along a row, from row to row, and from slice to slice. If slices are not
+  /// uniform, the last step has length one.
   std::array<glm::dvec3, 3> steps{};
-  std::vector<double> places;  ///< for non-uniform slices, along the last step, from 0; else empty
+  std::vector<double> places;  ///< positions of non-uniform slices along the last step, from 0; otherwise empty
   std::vector<std::string> notes;
   scene::TimeStepRead time_step{};
 };
 
-/// The series of the named file, otherwise the one with the most slices. If there are several times: the chosen one,
-/// otherwise the last. Slices of another size or direction than the majority are left out, with a note. Throws
-/// Error(bad_input).
+/// Selects one volume: the series that contains the file `named`, otherwise the series with the most slices. If it has
+/// several times, selects the requested time, otherwise the last. Slices whose size or direction differ from those of
+/// most slices are left out, with a note. Throws Error(bad_input).
 DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::path& named,
                       std::optional<std::size_t> time_step, const std::string& source);
 

@@ -29,11 +29,12 @@ namespace {
 
 constexpr const char* write_again = "the file is truncated or damaged, write it again or leave it out";
 
-/// Sort key of slices at one position: the first of these values that the file has.
+/// Returns the key by which slices at one position are sorted: the first of these values that the file has.
 DicomTime time_of(const gdcm::DataSet& data) {
-  if (const auto index = dicom_number(data, 0x0020, 0x0100)) return {*index, 0};         // temporal position identifier
-  if (const auto trigger = dicom_number(data, 0x0018, 0x1060)) return {*trigger, 1e-3};  // of the heart
-  for (const std::uint16_t element : {0x0022, 0x0023}) {  // acquisition, content: dates; times are 10 further
+  if (const auto index = dicom_number(data, 0x0020, 0x0100)) return {*index, 0};  // temporal position identifier
+  if (const auto trigger = dicom_number(data, 0x0018, 0x1060))
+    return {*trigger, 1e-3};                              // of the heart, in milliseconds
+  for (const std::uint16_t element : {0x0022, 0x0023}) {  // acquisition and content dates; their times are 10 further
     const std::string date = dicom_text(data, 0x0008, element);
     if (const std::string clock = dicom_text(data, 0x0008, static_cast<std::uint16_t>(element + 0x10)); !clock.empty())
       if (const auto moment = dicom_moment(date + clock); moment && date.size() == 8) return {*moment, 1};
@@ -99,7 +100,7 @@ std::optional<NumberType> number_type_of(const gdcm::PixelFormat& format) {
   return std::nullopt;
 }
 
-/// A sample that uses only `bits` bits.
+/// Returns a sample that uses only `bits` bits.
 template <class T>
 T sample_at(const char* bytes, int bits) {
   T sample;
@@ -114,7 +115,7 @@ T sample_at(const char* bytes, int bits) {
   return sample;
 }
 
-/// A 16-bit sample, signed or not like the file's samples; no value if the element is missing.
+/// Returns a 16-bit sample, signed or not like the file's samples; no value if the element is missing.
 std::optional<double> sample_in(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element, bool is_signed) {
   const gdcm::Tag tag(group, element);
   if (!data.FindDataElement(tag)) return std::nullopt;
@@ -124,7 +125,7 @@ std::optional<double> sample_in(const gdcm::DataSet& data, std::uint16_t group, 
                    : static_cast<double>(sample_at<std::uint16_t>(value->GetPointer(), 16));
 }
 
-/// The padding value, or the range if a limit is also given.
+/// Returns the padding value or, if the file also has a limit, the range.
 std::optional<std::array<double, 2>> padding_of(const gdcm::File& file) {
   const bool is_signed = gdcm::ImageHelper::GetPixelFormatValue(file).GetPixelRepresentation() == 1;
   const std::optional<double> value = sample_in(file.GetDataSet(), 0x0028, 0x0120, is_signed);
@@ -142,7 +143,7 @@ DicomSegments segments_of(const gdcm::DataSet& data) {
   return segments;
 }
 
-/// According to the transfer syntax in the header, which is never deflated.
+/// Whether the transfer syntax in the header is the deflated one; the header itself is never deflated.
 bool is_deflated(const std::filesystem::path& file) {
   return io::read_beginning(file, 1024).find("1.2.840.10008.1.2.1.99") != std::string::npos;
 }
@@ -154,16 +155,16 @@ glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, co
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   gdcm::Trace::WarningOff(), gdcm::Trace::ErrorOff(), gdcm::Trace::DebugOff();
   try {
-    if (is_deflated(file))  // GDCM aborts, or returns wrong samples if they end early
+    if (is_deflated(file))  // GDCM aborts for these, or returns wrong samples if they end early
       throw scene::bad_input(fmt::format(
           "{}: its data set is deflated, which is not read; dcmtk's `dcmconv +te` writes it plainly", file.string()));
     std::ifstream in(file, std::ios::binary);
     gdcm::Reader reader;
     reader.SetStream(in);
-    // Skips the samples and stops, so that the header of a file truncated in its samples is still read.
+    // Stops before the samples, so that the header of a file whose samples are truncated can be read.
     if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)})) return std::nullopt;
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
-    // Rows and columns; a DICOMDIR, a report or a plan has neither.
+    // Checks for rows and columns, which a DICOMDIR, a report or a plan does not have.
     if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
       return std::nullopt;
     DicomSlice slice;
@@ -180,7 +181,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     slice.number = static_cast<std::int64_t>(std::clamp(dicom_number(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
     if (slice.modality == "SEG") slice.segments = segments_of(data);
-    // For labels the padding value is that of the background.
+    // For labels, the padding value is the value of the background.
     if (slice.segments.type.empty()) slice.padding = padding_of(reader.GetFile());
     if (const auto most = dicom_shorts(data, 0x0062, 0x000e); slice.segments.type == "FRACTIONAL" && !most.empty())
       slice.slope = 1.0 / std::max<double>(most.front(), 1);
@@ -201,7 +202,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_again));
   };
-  // GDCM accepts truncated samples, and packed ones without their end marker.
+  // Checked here, because GDCM accepts truncated samples, and compressed samples without their end marker.
   {
     const io::WholeFile mapped(slice.file);
     if (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
@@ -233,7 +234,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   if (bytes_.size() != samples * io::size_of(type_)) throw refuse("its samples are not as many as its header states");
 }
 
-/// The first sample is the lowest bit; neither rows nor frames are byte-aligned (PS3.5, 8.1.1).
+/// Unpacks bits. The first sample is the lowest bit; neither rows nor frames are byte-aligned (PS3.5, 8.1.1).
 void DicomSamples::take_bits(const DicomSlice& slice) {
   const std::string source = slice.file.string();
   if (slice.is_packed)
@@ -257,7 +258,7 @@ DicomValues DicomSamples::values(const DicomSlice& slice) const {
   DicomValues values;
   const std::size_t count = frame_count(), begin = static_cast<std::size_t>(slice.frame) * count;
   const auto is_whole = [](double v) { return v == std::floor(v); };
-  // Integers that keep their order need no check of each value.
+  // If values are integers in the order of the samples, they need not be checked one by one.
   const bool is_plain = !padding_ && !slice.joins_frames && !has_bits_ && is_whole(slice.slope) &&
                         is_whole(slice.intercept) && std::abs(slice.slope) < 0x1p20 &&
                         std::abs(slice.intercept) < 0x1p52 && count > 0;
@@ -307,7 +308,7 @@ std::uint64_t DicomSamples::read_joined(const DicomSlice& slice, std::size_t fir
     const std::size_t begin = static_cast<std::size_t>(part.frame) * frame_size_ + first;
     for (std::size_t k = 0; k < out.size(); ++k) {
       if (has_bits_ && (begin + k) % 8 == 0 && bytes_[(begin + k) / 8] == 0) {
-        k += 7;  // most of a segmentation is empty
+        k += 7;  // skips whole bytes of zeros, because most of a segmentation is empty
         continue;
       }
       const double sample = has_bits_ ? slice.slope * bit_at(begin + k) : frame[k];

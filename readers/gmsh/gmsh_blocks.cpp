@@ -17,7 +17,7 @@ namespace {
 using scene::Association;
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-/// Used instead of a physical group's number.
+/// Key of the group of cells without a physical group.
 constexpr int no_group = 0;
 
 /// The cells of one block.
@@ -26,7 +26,7 @@ struct Group {
   std::vector<GmshElements> elements;
 };
 
-/// All nodes, with an index of their tags.
+/// All nodes, with an index from tags to nodes.
 struct Nodes {
   std::vector<std::size_t> tags;
   TagIndex places;
@@ -41,7 +41,7 @@ Nodes read_nodes() {
   return nodes;
 }
 
-/// The names of physical groups and partitions, and the group in which a cell is drawn.
+/// The names of physical groups and partitions. Determines the group in which a cell is drawn.
 class Names {
  public:
   explicit Names(const GmshVolumes& volumes) : memberships_(volumes.memberships) {
@@ -75,7 +75,7 @@ class Names {
   [[nodiscard]] bool has_several_groups() const { return cells_of_.size() > 1; }
   [[nodiscard]] bool has_partitions() const { return partitions_.size() > 1; }
 
-  /// The group of a membership with the fewest cells.
+  /// Returns the group of a membership that has the fewest cells.
   [[nodiscard]] int smallest_group(std::uint32_t member) const {
     int smallest = no_group;
     for (const int group : memberships_[member].groups)
@@ -83,7 +83,7 @@ class Names {
     return smallest;
   }
 
-  /// The block of a membership's cells; no value if they are not chosen.
+  /// Returns the block for cells of a membership; no value if they are not chosen.
   [[nodiscard]] std::optional<std::string> block_of(std::uint32_t member, const cells::BlockChoice& choice) const {
     const std::string smallest = name_of(smallest_group(member));
     if (choice.empty()) return smallest;
@@ -108,7 +108,7 @@ class Names {
   std::map<int, std::string> group_names_, partitions_;
 };
 
-/// The elements grouped by block, in the order of `names`.
+/// Groups the elements by block, in the order of `names`.
 std::vector<Group> grouped(GmshVolumes& volumes, const Names& names, const cells::BlockChoice& choice) {
   std::vector<std::optional<std::string>> block_of;
   for (std::uint32_t m = 0; m < volumes.memberships.size(); ++m) block_of.push_back(names.block_of(m, choice));
@@ -141,7 +141,7 @@ std::vector<Group> grouped(GmshVolumes& volumes, const Names& names, const cells
   return list;
 }
 
-/// Makes one block per group.
+/// Creates one block per group.
 class Blocks {
  public:
   Blocks(const Nodes& nodes, const GmshVolumes& volumes, const Names& names, const std::vector<GmshView>& views,
@@ -164,7 +164,7 @@ class Blocks {
     for (const GmshElements& elements : group.elements) add_cells(elements, block);
     for (const std::size_t node : used_) local_[node] = unused;
     for (const GmshView& view : views_) add_field(view, group, block);
-    // A field to color by if there is no view.
+    // Adds a field that distinguishes the groups, which is useful if there is no view.
     if (names_.has_several_groups())
       add_number_field("PhysicalGroupId", group, block, [&](std::uint32_t m) { return names_.smallest_group(m); });
     if (names_.has_partitions())
@@ -185,7 +185,8 @@ class Blocks {
     block.fields.push_back(cells::field_of_values(name, "int32", Association::cell, 1, std::move(numbers)));
   }
 
-  /// The index in a view of an element's value; the file may list the element under several numbers.
+  /// Returns the index in a view of an element's value. The view may use any of the numbers under which the file lists
+  /// the element.
   [[nodiscard]] std::size_t place_in(const GmshView& view, std::size_t tag) const {
     const std::size_t at = view.places.find(tag);
     const auto& others = volumes_.other_tags;
@@ -225,7 +226,7 @@ class Blocks {
     }
   }
 
-  /// A view without values in the group is not a field of it.
+  /// A view that has no values for this group does not become a field of the block.
   void add_field(const GmshView& view, const Group& group, cells::CellBlock& block) const {
     const bool of_cells = view.of == GmshView::Of::elements;
     const std::size_t tuples = of_cells ? block.types.size() : used_.size();
@@ -265,9 +266,9 @@ class Blocks {
   const Names& names_;
   const std::vector<GmshView>& views_;
   const std::string& source_;
-  std::vector<std::uint32_t> local_;  ///< per node: its point in the current block
-  std::vector<std::size_t> used_;     ///< per point of the block: its node
-  bool apart_ = false;                ///< each cell has its own points, which have its values
+  std::vector<std::uint32_t> local_;  ///< for each node, its point in the current block
+  std::vector<std::size_t> used_;     ///< for each point of the block, its node
+  bool apart_ = false;                ///< each cell has its own points, because a view has values per cell and node
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ CellType linear_type(std::size_t corners) {
                         : CellType::hexahedron;
 }
 
-/// VTK's type for these numbers of corners and nodes; no value if there is none.
+/// Returns VTK's type for these numbers of corners and nodes; no value if there is none.
 std::optional<CellType> curved_type(std::size_t order, std::size_t corners, std::size_t nodes) {
   const std::size_t n = order + 1;
   if (corners == 4 && nodes == 10) return CellType::quadratic_tetra;
@@ -48,7 +48,7 @@ void add_between(const Place& a, const Place& b, int order, Places& places) {
   for (int k = 1; k < order; ++k) places.push_back(step(a, b, k, order));
 }
 
-/// A triangle with `order` steps per edge: corners, edges around it, and the triangle inside.
+/// Adds the nodes of a triangle with `order` steps per edge: corners, edges around it, and the triangle inside.
 void add_triangle(const Place& a, const Place& b, const Place& c, int order, Places& places) {
   places.push_back(a);
   if (order == 0) return;
@@ -63,7 +63,7 @@ void add_triangle(const Place& a, const Place& b, const Place& c, int order, Pla
   add_triangle(within(a, b, c), within(b, c, a), within(c, a, b), order - 3, places);
 }
 
-/// The same for a quadrilateral.
+/// Adds the nodes of a quadrilateral in the same way.
 void add_quadrilateral(const std::array<Place, 4>& c, int order, Places& places) {
   if (order < 0) return;
   places.push_back(c[0]);
@@ -133,7 +133,7 @@ GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> place
   for (std::size_t wanted = 0; wanted < nodes; ++wanted)
     for (std::size_t k = 0; k < nodes; ++k) {
       const glm::dvec3 d = theirs[k] - lattice->place(wanted);
-      constexpr double apart = 1e-6;  // nodes of order 100 are 1e-2 apart
+      constexpr double apart = 1e-6;  // tolerance: nodes of order 100 are 1e-2 apart
       if (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) < apart) order_of_nodes.push_back(k);
     }
   if (order_of_nodes.size() != nodes) return cell;

@@ -18,7 +18,7 @@
 namespace tessera::readers {
 namespace {
 
-/// A cell type as described by Gmsh's library, when it first occurs.
+/// Returns a cell type as described by Gmsh's library, which is called when the type first occurs.
 const GmshCell& cell_of(int type, std::map<int, GmshCell>& known, std::vector<std::string>& notes) {
   const auto [found, is_new] = known.try_emplace(type);
   if (!is_new) return found->second;
@@ -58,7 +58,7 @@ GmshMembership membership_of_entity(int entity) {
   return membership;
 }
 
-/// Merges elements listed several times, once for each group. Duplicates within a group are kept.
+/// Merges elements that are listed several times, once for each group. Duplicates within a group are kept.
 class Repetitions {
  public:
   Repetitions(GmshVolumes& volumes, Memberships& memberships) : volumes_(volumes), memberships_(memberships) {}
@@ -72,7 +72,7 @@ class Repetitions {
     for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
       for (last = first + 1; last < keys.size() && keys[last].hash == keys[first].hash; ++last) {
       }
-      constexpr std::size_t most = 64;  // limit of groups per element; without it, damaged files take quadratic time
+      constexpr std::size_t most = 64;  // limit of groups per element, so that damaged files do not take quadratic time
       for (std::size_t a = first; a + 1 < last; ++a)
         for (std::size_t b = a + 1; b < std::min(last, a + most); ++b)
           if (takes(keys[a], keys[b], is_gone)) mark(keys[b], is_gone);
@@ -110,7 +110,7 @@ class Repetitions {
     return !is_gone[key.elements].empty() && is_gone[key.elements][key.place] != 0;
   }
 
-  /// Whether `b` is element `a` in another group; then adds that group to `a`.
+  /// Whether `b` is element `a` in another group. If so, adds that group to `a`.
   bool takes(const Key& a, const Key& b, const Gone& is_gone) {
     if (is_marked(a, is_gone) || is_marked(b, is_gone)) return false;
     GmshElements &of_a = volumes_.elements[a.elements], &of_b = volumes_.elements[b.elements];
@@ -146,7 +146,7 @@ class Repetitions {
   Memberships& memberships_;
 };
 
-/// Takes memberships element by element, as listed in MSH 1 and 2.
+/// Sets memberships for individual elements, as listed in MSH 1 and 2.
 void take_element_tags(const std::vector<GmshElementTags>& tags, GmshVolumes& volumes, Memberships& memberships) {
   std::vector<std::size_t> numbers;
   numbers.reserve(tags.size());
@@ -157,7 +157,7 @@ void take_element_tags(const std::vector<GmshElementTags>& tags, GmshVolumes& vo
   for (GmshElements& elements : volumes.elements)
     for (std::size_t k = 0; k < elements.tags.size(); ++k) {
       const std::size_t place = places.find(elements.tags[k]);
-      if (place == TagIndex::none) continue;  // numbered differently: keeps the groups of its entity
+      if (place == TagIndex::none) continue;  // numbered differently; keeps the groups of its entity
       GmshMembership membership;
       const int group = std::abs(tags[place].group);
       if (group != 0) membership.groups.push_back(group);
@@ -180,7 +180,7 @@ GmshVolumes gmsh_volumes(const std::filesystem::path& file, const std::string& s
   for (const auto& [dimension, entity] : entities) {
     std::string kind;
     gmsh::model::getType(3, entity, kind);
-    if (kind.starts_with("Ghost")) continue;  // its elements also belong to another partition
+    if (kind.starts_with("Ghost")) continue;  // elements of ghost entities also belong to another partition
     const std::uint32_t member = memberships.number_of(membership_of_entity(entity));
     std::vector<int> element_types;
     std::vector<std::vector<std::size_t>> tags, nodes;

@@ -26,7 +26,7 @@
 namespace tessera::readers {
 namespace {
 
-/// The first error in Gmsh's log, with the name passed to it replaced by the file's.
+/// Returns the first error in Gmsh's log. The name passed to Gmsh is replaced by the file's name.
 std::string first_error(std::vector<std::string> log, const std::string& given, const std::string& source) {
   for (std::string& line : log) {
     constexpr std::string_view mark = "Error: ";
@@ -38,7 +38,7 @@ std::string first_error(std::vector<std::string> log, const std::string& given, 
   return "";
 }
 
-/// Returns false if the library failed on partitions, so that the file may be tried without them.
+/// Reads a file. Returns false if the library failed on partitions, so that the caller may try the file without them.
 bool merge(const std::string& given, const std::string& source, bool is_last_try = true) {
   static bool is_ready = false;
   if (!is_ready) {
@@ -48,7 +48,7 @@ bool merge(const std::string& given, const std::string& source, bool is_last_try
     is_ready = true;
   }
   gmsh::clear();
-  allow_for(source);  // after loading the library, whose memory does not count for the file
+  allow_for(source);  // called after loading the library, whose memory does not count for the file
   gmsh::logger::start();
   bool failed = false;
   try {
@@ -72,7 +72,7 @@ bool merge(const std::string& given, const std::string& source, bool is_last_try
   return true;
 }
 
-/// Gmsh accepts a file that ends between two sections.
+/// Throws if the file ends between two sections, which Gmsh accepts.
 void require_last_section(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = in.tellg();
@@ -117,7 +117,7 @@ io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& f
   if (!beginning.starts_with("$MeshFormat") && !beginning.starts_with("$NOD") && !beginning.starts_with("$Comments"))
     throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it again", source));
   require_last_section(file);
-  // Passed by a name without an extension, because Gmsh would trust the extension of another format.
+  // Gmsh gets a name without an extension, because it would trust the extension of another format.
   system::Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
   if (system::Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);

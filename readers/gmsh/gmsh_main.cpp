@@ -5,7 +5,8 @@
 #include "readers/gmsh/gmsh_file.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
-// Gmsh 4.8 frees an array of prisms' faces as a single object (ClosureGen::getFaceClosurePrism).
+// Disables a check that Gmsh 4.8 fails: it frees an array of prisms' faces as a single object
+// (ClosureGen::getFaceClosurePrism).
 extern "C" [[gnu::visibility("default"), gnu::used]] const char*
 __asan_default_options() {  // NOLINT(bugprone-reserved-identifier)
   return "alloc_dealloc_mismatch=0";

@@ -17,12 +17,12 @@ namespace {
 
 using Tags = std::optional<std::vector<GmshElementTags>>;
 
-/// Parses a file's text sequentially.
+/// Parses the text of a file sequentially.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
 
-  /// The next integer on this line.
+  /// Returns the next integer on this line.
   std::optional<std::int64_t> number() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
     std::int64_t value = 0;
@@ -44,7 +44,7 @@ class Words {
   std::string_view rest_;
 };
 
-/// Interprets the numbers after an element's type, whose meaning depends on the version.
+/// Stores a number that follows an element's type; its meaning depends on the version and on its place.
 void take_tag(double version, std::size_t place, std::size_t count, std::int64_t tag, GmshElementTags& tags) {
   const bool is_partition = version < 2.2 ? place == 2 : place == 3 && count > 3;
   if (place == 0) tags.group = static_cast<int>(tag);
@@ -72,16 +72,16 @@ Tags text_tags(Words words, double version) {
   return all;
 }
 
-/// The list of elements of an MSH 2 file, from the line of their count on.
+/// The list of elements of an MSH 2 file, starting at the line with their count.
 struct ElementList {
   std::string_view elements;
   double version;
   bool is_binary, is_swapped;
 };
 
-/// Runs of elements of one type: 32-bit numbers in the byte order of the 1 that ends $MeshFormat. Calls `use(bytes of
-/// an element's numbers, beginning with its own, number of tags, number_at)` for each. Returns whether the list was
-/// parsed to its end.
+/// Parses runs of elements of one type: 32-bit numbers in the byte order of the 1 that ends $MeshFormat. For each
+/// element, calls `use(bytes of the element's numbers, beginning with its own, number of tags, number_at)`. Returns
+/// whether the list was parsed to its end.
 template <class Use>
 bool each_binary_element(const ElementList& list, const Use& use) {
   Words words(list.elements);
@@ -122,7 +122,7 @@ Tags binary_tags(const ElementList& list) {
   return followed ? Tags(std::move(all)) : std::nullopt;
 }
 
-/// The text after a line that consists of this word.
+/// Returns the text after a line that consists of this word.
 std::optional<std::string_view> after_line(std::string_view text, std::string_view word) {
   for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size(), line = text.find('\n', end);
@@ -163,7 +163,7 @@ std::string binary_without_partitions(std::string_view text) {
   if (!list || !list->is_binary) return {};
   std::string copy(text);
   const bool followed = each_binary_element(*list, [&](std::string_view element, std::size_t tags, const auto&) {
-    constexpr std::size_t before = 3;  // its number, its group and its entity
+    constexpr std::size_t before = 3;  // the element's number, its group and its entity
     const auto at = static_cast<std::size_t>(element.data() - text.data());
     if (tags > 2) std::fill_n(copy.begin() + static_cast<std::ptrdiff_t>(at + 4 * before), 4 * (tags - 2), '\0');
   });

@@ -13,11 +13,11 @@ struct GmshElementType {
   int order = 0;
   std::size_t nodes = 0;       ///< 0: unknown
   std::size_t corners = 0;     ///< 0: unknown
-  std::vector<double> places;  ///< as in gmsh_cell(); fewer than the nodes if the dimension is below 3
+  std::vector<double> places;  ///< node positions as in gmsh_cell(); incomplete if the dimension is below 3
 };
 
-/// The description by Gmsh's library. Version 4.8 does not describe prisms of third or higher order; this function
-/// completes those with all nodes, and for the others the corners.
+/// Returns the description by Gmsh's library. Version 4.8 does not describe prisms of third or higher order. For these,
+/// this function adds the nodes of complete prisms, and for other prisms only the corners.
 GmshElementType gmsh_element_type(int type);
 
 }  // namespace tessera::readers

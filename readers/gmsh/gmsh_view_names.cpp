@@ -42,7 +42,7 @@ bool begins_view(std::string_view text, std::size_t dollar) {
   return word == "$NodeData" || word == "$ElementData" || word == "$ElementNodeData";
 }
 
-/// Positions of missing quotes, in pairs.
+/// Returns the positions where quotes are missing, in pairs.
 std::vector<std::size_t> lacking_quotes(std::string_view text) {
   std::vector<std::size_t> places;
   for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
@@ -69,7 +69,7 @@ void write_all(int file, std::string_view text, const std::string& source) {
   }
 }
 
-/// An element's line with only the first two of its tags: its physical group and entity.
+/// Returns the line of an element with only its first two tags, the physical group and the entity.
 std::string with_two_tags(std::string_view line) {
   std::istringstream words{std::string(line)};
   std::string number, type, group, entity, dropped;

@@ -12,11 +12,11 @@
 namespace tessera::readers {
 namespace {
 
-/// A view in Gmsh, without its numbers.
+/// A view in Gmsh's library, without its numbers.
 struct KnownView {
   int tag = 0;
   std::string name;
-  std::size_t first_step = 0, steps = 0;  ///< files may count from 1
+  std::size_t first_step = 0, steps = 0;  ///< first_step: files may count from 1
 };
 
 struct ModelData {
@@ -27,7 +27,7 @@ struct ModelData {
   double time = 0;
 };
 
-/// No value for lists of shapes, which have no mesh, and for a step without data.
+/// Returns the data of a view at a step. No value for lists of shapes, which have no mesh, and for a step without data.
 std::optional<ModelData> data_of(int tag, std::size_t step) {
   ModelData data;
   try {
@@ -81,7 +81,7 @@ std::optional<GmshView> view_of(const KnownView& known, std::size_t step) {
   return view;
 }
 
-/// Times of the steps of the first view with `steps` steps.
+/// Returns the times of the first view that has `steps` steps.
 std::vector<double> times_of(const std::vector<KnownView>& views, std::size_t steps) {
   std::vector<double> times;
   const auto longest = std::ranges::find(views, steps, &KnownView::steps);
@@ -121,7 +121,7 @@ std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std
   const std::size_t step = read.step;
   std::vector<GmshView> views;
   for (const KnownView& each : known) {
-    if (each.steps > 1 && step >= each.steps) continue;  // the view ends earlier
+    if (each.steps > 1 && step >= each.steps) continue;  // the view has fewer steps
     std::optional<GmshView> view = each.steps > 0 ? view_of(each, step) : std::nullopt;
     if (view)
       views.push_back(std::move(*view));

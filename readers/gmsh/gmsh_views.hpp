@@ -10,19 +10,19 @@
 
 namespace tessera::readers {
 
-/// The inverse of a list of tags (numbers from a file, in any order and with gaps).
+/// Finds the index of a tag in a list of tags. Tags are numbers from a file, in any order and with gaps.
 class TagIndex {
  public:
   static constexpr std::size_t none = ~std::size_t{0};
 
   TagIndex() = default;
   explicit TagIndex(const std::vector<std::size_t>& tags);
-  /// The index of a tag in the list, the first if it occurs twice; `none` if it is absent.
+  /// Returns the index of a tag in the list, the first one if the tag occurs twice; `none` if it is absent.
   [[nodiscard]] std::size_t find(std::size_t tag) const;
 
  private:
-  std::vector<std::size_t> places_;                          ///< by tag, if tags are dense enough
-  std::vector<std::pair<std::size_t, std::size_t>> sorted_;  ///< tag and index
+  std::vector<std::size_t> places_;                          ///< indices by tag, if tags are dense enough
+  std::vector<std::pair<std::size_t, std::size_t>> sorted_;  ///< pairs of tag and index, if they are not
 };
 
 /// A Gmsh field at one time step.
@@ -32,13 +32,13 @@ struct GmshView {
   std::string name;
   Of of = Of::nodes;
   std::size_t components = 1;
-  TagIndex places;                               ///< of the tags of nodes or elements in the following arrays
-  std::vector<double> values;                    ///< per node or element
-  std::vector<std::vector<double>> node_values;  ///< for the nodes of each element
+  TagIndex places;                               ///< index in the following arrays of each node's or element's tag
+  std::vector<double> values;                    ///< one entry per node or element
+  std::vector<std::vector<double>> node_values;  ///< values for the nodes of each element
 };
 
-/// The views that Gmsh has read, at a time step counted from 0, or the last one. `read` receives the step, `notes` what
-/// is left out. Throws Error(bad_input) for a step that does not exist.
+/// Returns the views that Gmsh has read, at a time step counted from 0, or at the last one. `read` receives the step,
+/// `notes` describes views that are left out. Throws Error(bad_input) for a step that does not exist.
 std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std::string& source,
                                  std::vector<std::string>& notes, scene::TimeStepRead& read);
 

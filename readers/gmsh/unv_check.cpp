@@ -28,7 +28,7 @@ class Universal {
   void check() {
     while (next()) {
       if (!is_mark() || !next()) continue;
-      if (is_mark() && !next()) break;  // two marks: the first ends a dataset
+      if (is_mark() && !next()) break;  // if there are two marks, the first ends a dataset
       const long dataset = whole_numbers<1>()[0];
       known_.insert(dataset);
       while (next() && !is_mark()) read_record(dataset);
@@ -93,7 +93,8 @@ class Universal {
     }
   }
 
-  /// Call after reading the part's number; its name follows, then all systems up to the dataset's end.
+  /// Reads coordinate systems. Must be called after reading the part's number; the part's name follows, then all
+  /// systems up to the end of the dataset.
   void read_systems() {
     next();
     while (next() && !is_mark()) {
@@ -130,7 +131,7 @@ class Universal {
   std::string source_, line_;
   bool is_again_ = false;  ///< next() returns this line again
   std::set<long> known_;
-  std::map<long, long> points_in_;             ///< a point in each coordinate system
+  std::map<long, long> points_in_;             ///< for each coordinate system, one of its points
   std::map<long, std::string> other_systems_;  ///< systems other than the global one, with a description
 };
 

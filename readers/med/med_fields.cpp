@@ -13,7 +13,7 @@
 namespace tessera::readers {
 namespace {
 
-/// One field at one of its computing steps.
+/// One field at one of its computation steps.
 struct FieldAt {
   std::string name, mesh;
   med_field_type type = MED_FLOAT64;
@@ -37,7 +37,8 @@ double value_of(med_field_type type, const std::vector<unsigned char>& bytes, st
   return is_wide(type) ? as(std::int64_t{}) : as(std::int32_t{});
 }
 
-/// The nodes or cells, from 0, to which the values of a profile belong; all of them, in order, if it has no name.
+/// Returns the nodes or cells, counted from 0, to which the values of a profile belong. All nodes or cells, in order,
+/// if the profile has no name.
 std::vector<std::size_t> places_of(const MedFile& file, const std::string& profile, std::size_t values,
                                    std::size_t count) {
   std::vector<std::size_t> places(values);
@@ -55,7 +56,7 @@ std::vector<std::size_t> places_of(const MedFile& file, const std::string& profi
   return places;
 }
 
-/// Writes the values that the file has for `count` nodes, or cells of one kind, to `out`.
+/// Writes the values that the file contains for `count` nodes, or for cells of one kind, to `out`.
 enum class Found { none, some, at_points };
 Found read_values(const MedFile& file, const FieldAt& field, med_entity_type entity, med_geometry_type kind,
                   std::size_t count, double* out) {
@@ -108,7 +109,7 @@ void add_field(const MedFile& file, const FieldAt& field, MedMesh& mesh, std::ve
         cells::field_of_values(field.name, "double", scene::Association::cell, field.components, std::move(of_cells)));
 }
 
-/// Times of a field's steps; empty if one has none.
+/// Returns the times of a field's steps; empty if a step has none.
 std::vector<double> times_of(const MedFile& file, const FieldAt& field, std::size_t steps) {
   std::vector<double> times(steps);
   for (std::size_t k = 0; k < steps; ++k) {

@@ -34,7 +34,7 @@ inline constexpr std::array med_cell_kinds = {MedCellKind{MED_TETRA4, CellType::
                                               MedCellKind{MED_HEXA20, CellType::quadratic_hexahedron, 20},
                                               MedCellKind{MED_HEXA27, CellType::triquadratic_hexahedron, 27}};
 
-/// An open file. Every failing call throws Error.
+/// An open file. Every call that fails throws Error.
 class MedFile {
  public:
   explicit MedFile(const std::filesystem::path& file);
@@ -51,18 +51,19 @@ class MedFile {
   med_idt id_ = -1;
 };
 
-/// A mesh of the file, as a block without fields.
+/// One mesh of the file, as a block without fields.
 struct MedMesh {
   cells::CellBlock block;
-  std::vector<std::size_t> cells_of_kind;  ///< per entry of med_cell_kinds, consecutive in the block
+  std::vector<std::size_t> cells_of_kind;  ///< for each entry of med_cell_kinds, its number of cells, which are
+                                           ///< consecutive in the block
 };
 
-/// All three-dimensional meshes; notes name the others. Throws Error(bad_input) for polyhedra, and if there is no such
-/// mesh.
+/// Returns all three-dimensional meshes; notes name the other meshes. Throws Error(bad_input) for polyhedra, and if
+/// there is no three-dimensional mesh.
 std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes);
 
-/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` receives the step.
-/// Missing values are NaN. Throws Error(bad_input) if no field has this step.
+/// Adds the fields of the nodes and cells of meshes at one time step, counted from 0, or at the last; `read` receives
+/// the step. Missing values are NaN. Throws Error(bad_input) if no field has this step.
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
                     std::vector<std::string>& notes, scene::TimeStepRead& read);
 

@@ -24,7 +24,7 @@ namespace {
 struct MeshAt {
   std::string name;
   med_int step = MED_NO_DT, iteration = MED_NO_IT;
-  bool is_cylinder = false;  ///< r, theta, z
+  bool is_cylinder = false;  ///< coordinates are r, theta, z
   double angle_unit = 1;     ///< in radians
 };
 
@@ -33,7 +33,7 @@ std::size_t count_of(const MedFile& file, const MeshAt& mesh, med_entity_type en
   med_bool changed = MED_FALSE, moved = MED_FALSE;
   const med_int count = MEDmeshnEntity(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, entity, kind, what,
                                        what == MED_COORDINATE ? MED_NO_CMODE : MED_NODAL, &changed, &moved);
-  return static_cast<std::size_t>(std::max<med_int>(count, 0));  // negative if there are none
+  return static_cast<std::size_t>(std::max<med_int>(count, 0));  // MED returns a negative number if there are none
 }
 
 void read_points(const MedFile& file, const MeshAt& mesh, cells::CellBlock& block) {
@@ -53,7 +53,7 @@ void read_points(const MedFile& file, const MeshAt& mesh, cells::CellBlock& bloc
   }
 }
 
-/// Null for hexagonal prisms, which have VTK's order.
+/// Returns null for hexagonal prisms, whose nodes are in VTK's order.
 const cells::NodeOrder* order_of(const MedCellKind& kind) {
   for (const cells::NodeOrder& order : cells::all_node_orders())
     if (order.convention == cells::NodeConvention::med && order.type == kind.type && order.nodes == kind.nodes)
@@ -84,13 +84,14 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
       block.offsets.push_back(block.connectivity.size());
     }
   }
-  // An index has one entry more than cells; in files of version 2 it has this entry even without cells.
+  // The index has one entry more than there are cells. In files of version 2 it has that entry even if there are no
+  // cells.
   if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 1)
     throw scene::bad_input(fmt::format(
         "{}: mesh '{}' has polyhedra, which are not read; have them split, or write .vtu", file.source(), mesh.name));
 }
 
-/// Names are padded with blanks, and may contain arbitrary bytes.
+/// Returns a name up to the first zero byte, without padding blanks.
 std::string plain(std::string_view text) {
   std::string name(text.substr(0, text.find('\0')));
   name.resize(name.find_last_not_of(' ') + 1);
@@ -115,7 +116,7 @@ bool ends_early(const std::filesystem::path& file) {
 
 MedFile::MedFile(const std::filesystem::path& file) : source_(file.string()) {
   med_bool is_hdf5 = MED_FALSE, is_known = MED_FALSE;
-  // MED's library checks only the first bytes.
+  // Checked here, because MED's library checks only the first bytes.
   if (ends_early(file) || MEDfileCompatibility(file.c_str(), &is_hdf5, &is_known) < 0 || is_hdf5 != MED_TRUE)
     throw scene::bad_input(fmt::format(
         "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it again", source_));

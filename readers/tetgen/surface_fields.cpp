@@ -25,7 +25,7 @@ struct Box {
   }
 };
 
-/// A tree of boxes, split at the median along their longest axis, down to a few items.
+/// A tree of boxes. A node is split at the median along the longest axis of its box, down to a few items.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
@@ -33,7 +33,7 @@ class BoxTree {
     if (!order_.empty()) split(0, order_.size());
   }
 
-  /// Calls `visit(item)` for items in boxes within a squared distance, nearer halves first. It returns the squared
+  /// Calls `visit(item)` for items in boxes within a squared distance, nearer halves first. `visit` returns the squared
   /// distance that is still of interest.
   template <class Visit>
   void near(const glm::dvec3& p, double squared, const Visit& visit) const {
@@ -43,8 +43,8 @@ class BoxTree {
  private:
   struct Node {
     Box box;
-    std::size_t first, last;          ///< items, in `order_`
-    std::size_t left = 0, right = 0;  ///< nodes; 0: a leaf
+    std::size_t first, last;          ///< range in `order_`
+    std::size_t left = 0, right = 0;  ///< child nodes; 0 for a leaf
   };
 
   std::size_t split(std::size_t first, std::size_t last) {
@@ -85,8 +85,8 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-/// Squared distance from p to the nearest point of a triangle. Source: Ericson, "Real-Time Collision Detection", 2005,
-/// 5.1.5.
+/// Returns the squared distance from p to the nearest point of a triangle. Source: Ericson, "Real-Time Collision
+/// Detection", 2005, 5.1.5.
 double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const auto to = [&](const glm::dvec3& q) { return glm::dot(p - q, p - q); };
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -106,7 +106,7 @@ double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dve
 
 using Weights = std::array<double, 4>;
 
-/// Barycentric weights; no value for a flat tet.
+/// Returns the barycentric weights of a point in a tet; no value for a flat tet.
 std::optional<Weights> weights_in(const glm::dvec3& p, const FilledSurface& mesh, std::size_t tet) {
   const auto corner = [&](std::size_t k) { return mesh.points[mesh.tets[4 * tet + k]]; };
   const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a, ad = corner(3) - a, ap = p - a;
@@ -117,7 +117,7 @@ std::optional<Weights> weights_in(const glm::dvec3& p, const FilledSurface& mesh
   return Weights{1 - wb - wc - wd, wb, wc, wd};
 }
 
-/// Boxes of items of `corners` points each.
+/// Returns the boxes of items that have `corners` points each.
 std::vector<Box> boxes_of(const std::vector<glm::dvec3>& points, const std::vector<std::uint32_t>& indices,
                           std::size_t corners) {
   std::vector<Box> boxes(indices.size() / corners);
@@ -155,7 +155,7 @@ std::vector<std::vector<double>> spread_attributes(const cells::Surface& surface
   const glm::dvec3 size = whole.high - whole.low;
   const double rounding = 1e-18 * glm::dot(size, size);
   for (std::size_t v = surface.points.size(); v < filled.points.size(); ++v) {
-    // The tet that contains the point or, because of rounding, is nearest to it.
+    // Finds the tet that contains the point or, because of rounding, is nearest to it.
     double deepest = -infinity;
     Weights weights{};
     std::size_t inside = 0;

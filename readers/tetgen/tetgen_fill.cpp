@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #define TETLIBRARY
-// The header's terminatetetgen frees the mesh, then throws; the mesh's destructor frees it again, which crashes. The
-// library calls that function through the dynamic linker, so the function defined below replaces it; it must be visible
-// for that.
+// TetGen's own terminatetetgen, defined in its header, frees the mesh and then throws; the mesh's destructor frees it
+// again, which crashes. The library calls that function through the dynamic linker, so the function defined below
+// replaces it. For that, it must be visible.
 #define terminatetetgen tetgen_header_terminatetetgen
 #include <tetgen.h>
 #undef terminatetetgen
@@ -28,7 +28,7 @@ __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh*, int rea
 namespace tessera::readers {
 namespace {
 
-/// Messages for the numbers that TetGen throws (terminatetetgen in tetgen.h).
+/// Returns the message for a number that TetGen throws (terminatetetgen in tetgen.h).
 const char* reason(int thrown) {
   switch (thrown) {
     case 3:
@@ -44,8 +44,8 @@ const char* reason(int thrown) {
   }
 }
 
-/// Maps a surface to the unit box around the origin and back, scaled by a power of two: TetGen's tolerances do not work
-/// for metre-size cells at coordinates of 7e6.
+/// Maps a surface to the unit box around the origin and back. The scale is a power of two. Needed because TetGen's
+/// tolerances do not work for metre-size cells at coordinates of 7e6.
 struct Frame {
   glm::dvec3 centre{0};
   double scale = 1;
@@ -69,7 +69,7 @@ tetgenio* keep_for_good() {
   return kept.back();
 }
 
-/// tetgenio frees its arrays by delete[], so they are allocated by new[].
+/// Copies a surface to tetgenio, which frees its arrays by delete[]; so they are allocated by new[].
 void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
   const auto put = [&](REAL* list, std::size_t at, const glm::dvec3& p_world) {
     const glm::dvec3 p = frame.in(p_world);
@@ -104,7 +104,8 @@ void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
   }
 }
 
-/// Where a surface intersects itself, in words that follow "the surface cuts itself"; empty if TetGen does not find it.
+/// Describes where a surface intersects itself, in words that follow "the surface cuts itself"; empty if TetGen does
+/// not find the place.
 std::string place_of_cut(const cells::Surface& surface, const Frame& frame) {
   tetgenbehavior settings;
   std::string switches = "dzQ";  // d: find intersecting faces
@@ -144,7 +145,7 @@ FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volu
     settings.fixedvolume = 1;  // -a
     settings.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
   }
-  // Never freed: after a failure TetGen's destructors may crash, and the process ends soon.
+  // Never freed, because TetGen's destructors may crash after a failure, and the process ends soon.
   tetgenio* const in = keep_for_good();
   tetgenio* const out = keep_for_good();
   copy_in(surface, frame, *in);
@@ -157,7 +158,7 @@ FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volu
   }
   FilledSurface filled;
   const auto points = static_cast<std::size_t>(out->numberofpoints);
-  for (std::size_t v = 0; v < points; ++v) {  // TetGen keeps the surface's points first
+  for (std::size_t v = 0; v < points; ++v) {  // TetGen's output begins with the points of the surface
     const REAL* const p = out->pointlist + 3 * v;
     filled.points.push_back(v < surface.points.size() ? surface.points[v] : frame.out({p[0], p[1], p[2]}));
   }

@@ -26,10 +26,10 @@
 namespace tessera::readers {
 namespace {
 
-/// Records failures of HDF5's functions, which VTK's readers ignore, during its lifetime. Where the readers only test
-/// whether something exists, they disable it temporarily.
+/// Records failures of HDF5's functions during the lifetime of this object, because VTK's readers ignore them. While
+/// the readers only test whether something exists, they disable the recording.
 ///
-/// Uses the older of HDF5's interfaces: VTK saves and restores the handler through that one.
+/// Uses the older of HDF5's interfaces, through which VTK saves and restores the handler.
 class Hdf5Failures {
  public:
   Hdf5Failures() { H5Eset_auto1(note, &count_); }
@@ -47,7 +47,7 @@ class Hdf5Failures {
   std::size_t count_ = 0;
 };
 
-/// All levels, all blocks, all cell data.
+/// Makes a reader read all levels, all blocks and all cell data.
 template <class Reader>
 io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::string& source) {
   io::ForeignContents contents;
@@ -70,7 +70,8 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
             const std::string name = fmt::format("level {} block {}", level, b);
             if (block == nullptr)
               throw scene::bad_input(fmt::format("{}: {} cannot be read; {}", source, name, write_again));
-            // The covered cells are computed again: VTK assumes that blocks nest.
+            // The array that marks covered cells is removed, because VTK assumes that blocks nest. Which cells are
+            // covered is computed again.
             block->GetCellData()->RemoveArray("vtkGhostType");
             std::vector<io::ForeignPart> parts = parts_of(holdings, *block, source);
             for (io::ForeignPart& part : parts) {
@@ -82,14 +83,14 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
       {"Inconsistent spacing", "tracer particles", "data does not exist in file"});
   if (failures.any())
     throw scene::bad_input(fmt::format("{}: HDF5 cannot read all that belongs to it; {}", source, write_again));
-  // Their warnings mean a damaged file, except for spacings whose last bits differ from block to block, particles, and
-  // fields that some blocks do not have.
+  // Warnings of these readers mean a damaged file, except for spacings whose last bits differ from block to block,
+  // particles, and fields that some blocks do not have.
   if (!warning.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, warning, write_again));
   if (contents.parts.empty()) throw scene::bad_input(fmt::format("{}: it holds no blocks; {}", source, write_again));
   return contents;
 }
 
-/// Whether a line names the grid that follows one of the earlier ones: Pointer: Grid[1]->NextGridThisLevel = 2.
+/// Whether a line names the grid that follows one of the earlier grids: Pointer: Grid[1]->NextGridThisLevel = 2.
 bool is_pointer(const std::string& line, std::size_t grids) {
   unsigned grid = 0, next = 0;
   int end = 0;
@@ -101,7 +102,7 @@ bool is_pointer(const std::string& line, std::size_t grids) {
   return false;
 }
 
-/// Whether a line is KEY = and three numbers, or one word.
+/// Whether a line consists of KEY = and three numbers, or one word.
 bool has_values(const std::string& line, bool three_numbers) {
   std::istringstream words(line);
   std::string key, equals, value;
@@ -112,7 +113,7 @@ bool has_values(const std::string& line, bool three_numbers) {
   return static_cast<bool>(words >> numbers[0] >> numbers[1] >> numbers[2]);
 }
 
-/// VTK's reader searches without end for anything that a grid lacks.
+/// Throws if a grid is incomplete. VTK's reader would search without end for anything that a grid lacks.
 void require_grids(const std::filesystem::path& hierarchy) {
   constexpr std::array keys{"Grid",          "GridStartIndex", "GridEndIndex",     "GridLeftEdge",
                             "GridRightEdge", "BaryonFileName", "NumberOfParticles"};
@@ -160,14 +161,14 @@ io::ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& n
                                          needed.filename().string()));
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), true);
   require_grids(file);
-  // VTK's reader never closes the files that it opens.
+  // The limit of open files is raised, because VTK's reader never closes the files that it opens.
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
   }
   const vtkNew<vtkAMREnzoReader> reader;
-  reader->SetConvertToCGS(0);  // unconverted; with ten fields or more it would use the factors of others
+  reader->SetConvertToCGS(0);  // unconverted; the reader confuses the factors of ten fields or more
   io::ForeignContents contents = read_blocks(holdings, *reader, file.string());
   contents.format = "Enzo";
   return contents;

@@ -22,7 +22,7 @@ namespace {
 
 using ElementType = CGNS_ENUMT(ElementType_t);
 
-/// The node order of a supported three-dimensional element; null for others.
+/// Returns the node order of a supported three-dimensional element; null for others.
 const cells::NodeOrder* order_of(ElementType type) {
   struct Solid {
     ElementType type;
@@ -58,7 +58,7 @@ const cells::NodeOrder* order_of(ElementType type) {
                                : cells::find_node_order(cells::NodeConvention::cgns, found->shape, found->nodes);
 }
 
-/// Number of corners of a face; 0 if the type is not a face.
+/// Returns the number of corners of a face; 0 if the type is not a face.
 int corners_of_face(ElementType type) {
   switch (type) {
     case CGNS_ENUMV(TRI_3):
@@ -77,19 +77,20 @@ int corners_of_face(ElementType type) {
   }
 }
 
-/// Points, lines and faces have the first type numbers, and later ones for higher orders.
+/// Whether a type is that of points, lines or faces. These have the lowest type numbers, and higher ones for higher
+/// orders.
 bool is_below_three(ElementType type) {
   return type <= CGNS_ENUMV(QUAD_9) || corners_of_face(type) > 0 ||
          (type >= CGNS_ENUMV(BAR_4) && type <= CGNS_ENUMV(QUAD_16)) || type == CGNS_ENUMV(BAR_5) ||
          (type >= CGNS_ENUMV(TRI_12) && type <= CGNS_ENUMV(QUAD_25)) || type == CGNS_ENUMV(NGON_n);
 }
 
-/// The library's description of a section of elements.
+/// Description of a section of elements by the library.
 struct Section {
   int number = 0;
   std::string name{};
   ElementType type{};
-  cgsize_t first = 0, last = 0;  ///< the elements' numbers
+  cgsize_t first = 0, last = 0;  ///< numbers of the section's first and last element
   bool has_parents = false;
 
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(last - first + 1); }
@@ -118,8 +119,8 @@ std::vector<Section> sections_of(const CgnsZone& zone) {
   return sections;
 }
 
-/// A section's numbers: nodes, or for NFACE_n faces; those of element k are from offsets[k] to offsets[k + 1]. Elements
-/// of a MIXED section begin with their type.
+/// The numbers in a section: nodes, or, for NFACE_n, faces. Those of element k are from offsets[k] to offsets[k + 1].
+/// The numbers of an element of a MIXED section begin with its type.
 struct Elements {
   std::vector<cgsize_t> numbers, offsets, parents;
 
@@ -162,7 +163,7 @@ Elements elements_of(const CgnsZone& zone, const Section& section) {
   return elements;
 }
 
-/// Reads the sections in the order of the elements' numbers and adds the cells.
+/// Reads the sections in the order of their elements' numbers, and adds the cells.
 class Cells {
  public:
   Cells(const CgnsZone& zone, cells::CellBlock& block) : zone_(zone), block_(block), sections_(sections_of(zone)) {
@@ -202,7 +203,7 @@ class Cells {
         faces_.push_back({section, elements_of(zone_, section)});
   }
 
-  /// No value if the face does not exist.
+  /// Returns a face; no value if it does not exist.
   [[nodiscard]] std::optional<Face> face(cgsize_t number) const {
     for (const FaceSection& of : faces_) {
       if (number < of.section.first || number > of.section.last) continue;
@@ -249,7 +250,7 @@ class Cells {
     }
   }
 
-  /// The sign of a face states its direction in the cell, which is not needed here.
+  /// Adds a polyhedron. The sign of a face states its direction in the cell, which is not needed here.
   void add_polyhedron(Face numbers) {
     block_.face_locations.resize(block_.types.size(), cells::CellBlock::no_faces);
     block_.face_locations.push_back(static_cast<std::int64_t>(block_.faces.size()));
@@ -276,7 +277,8 @@ class Cells {
     block_.offsets.push_back(block_.connectivity.size());
   }
 
-  /// Adds cells defined only by the faces between them, in the order of the numbers in these faces.
+  /// Adds cells that are defined only by the faces between them, in the order of the numbers by which the faces refer
+  /// to them.
   void add_parents() {
     std::map<cgsize_t, std::vector<cgsize_t>> cells;
     for (const FaceSection& of : faces_)
@@ -311,7 +313,7 @@ bool is_plain(const CgnsZone& zone) {
       continue;
     }
     const cells::NodeOrder* const solid = order_of(section.type);
-    // Cells of higher order and unsupported cells are not left to VTK, which uses another node order for some.
+    // Cells of higher order and unsupported cells are not left to VTK, which uses another node order for some of them.
     if (section.first != next || solid == nullptr || solid->nodes > 8) return false;
     next = section.last + 1;
   }

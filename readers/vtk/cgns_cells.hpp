@@ -10,14 +10,14 @@
 
 namespace tessera::readers {
 
-/// An unstructured or structured zone of an open CGNS file. Numbers count from 1, as in the library.
+/// An unstructured or structured zone of an open CGNS file. Numbers are counted from 1, as in the CGNS library.
 struct CgnsZone {
   int file = 0, base = 0, zone = 0;
-  std::string name{};   ///< base and zone, "BASE/ZONE"
-  std::string where{};  ///< for messages: file and name
+  std::string name{};   ///< names of base and zone, "BASE/ZONE"
+  std::string where{};  ///< file and name, for messages
   CGNS_ENUMT(ZoneType_t) type{};
-  int dimensions = 3;              ///< of its cells
-  std::array<cgsize_t, 9> size{};  ///< points, then cells, along each index
+  int dimensions = 3;              ///< dimension of the zone's cells
+  std::array<cgsize_t, 9> size{};  ///< numbers of points, then of cells, along each index
 
   [[nodiscard]] bool is_structured() const { return type == CGNS_ENUMV(Structured); }
 };
@@ -25,12 +25,13 @@ struct CgnsZone {
 /// Throws Error(bad_input) with the library's message if `status` is an error.
 void require_cgns(int status, const CgnsZone& zone);
 
-/// Whether VTK's reader identifies the cells of an unstructured zone correctly. It takes the elements with the first
-/// numbers, as many as the zone has cells, in the order of the sections. Elements of order 2 are never plain.
+/// Whether VTK's reader identifies the cells of an unstructured zone correctly. It reads the elements with the lowest
+/// numbers, as many as the zone has cells, in the order of the sections. False for any zone with elements of order 2.
 bool is_plain(const CgnsZone& zone);
 
-/// Sets the cells of an unstructured zone: three-dimensional elements in the order of their numbers, whatever the order
-/// of the sections and the numbers of faces among them. Polyhedra are NFACE_n or, without these, the parents of faces.
+/// Sets the cells of an unstructured zone: its three-dimensional elements in the order of their numbers, whatever the
+/// order of the sections, and even if faces have numbers between them. Polyhedra are defined by NFACE_n or, if that is
+/// absent, by the parents of faces.
 ///
 /// Source  CGNS Standard Interface Data Structures, "Grid Coordinates, Elements, and Flow Solutions": 7.3, Elements_t,
 ///         and its figures of the elements' nodes.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// VTK's copy of the CGNS library. Its names are macros, and two of them conflict with ours. Include it first.
+// VTK's copy of the CGNS library. It defines names as macros, and two of these conflict with names of other libraries,
+// so this header must be included first.
 #include <vtk_cgns.h>
 
 #include VTK_CGNS(cgnslib.h)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/cgns_solutions.hpp"
-// The library's macros come first.
+// Included after the library, whose macros must come first.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace tessera::readers {
 namespace {
 
-/// The names that a node below a zone or base lists for a step, 32 characters each: from arrays whose name ends in
-/// "Pointers" and contains `word`.
+/// Returns the names that a node below a zone or base lists for a step, 32 characters each. The lists are arrays whose
+/// names end in "Pointers" and contain `word`.
 std::vector<std::string> names_at_step(std::uint64_t step, std::string_view word) {
   std::vector<std::string> names;
   int arrays = 0;
@@ -41,7 +41,7 @@ std::vector<std::string> names_at_step(std::uint64_t step, std::string_view word
   return names;
 }
 
-/// A zone's arrays of values by name, in file order, each with one number per point or cell.
+/// The arrays of a zone's values by name, in file order. Each has one number per point or cell.
 struct Values {
   scene::Association association{};
   std::vector<std::pair<std::string, std::vector<double>>> arrays;
@@ -50,7 +50,7 @@ struct Values {
     const auto found = std::ranges::find(arrays, name, &std::pair<std::string, std::vector<double>>::first);
     return found == arrays.end() ? nullptr : &found->second;
   }
-  /// The array of a name; a new one has no values yet.
+  /// Returns the array of a name. If it is new, all values are missing.
   std::vector<double>& add(const std::string& name, std::size_t count) {
     if (std::vector<double>* const known = find(name)) return *known;
     arrays.emplace_back(name, std::vector<double>(count, std::numeric_limits<double>::quiet_NaN()));
@@ -58,10 +58,10 @@ struct Values {
   }
 };
 
-/// NameX, NameY and NameZ become the vector Name, as in VTK's reader.
+/// Adds the arrays as fields. NameX, NameY and NameZ become the vector Name, as in VTK's reader.
 void add_fields(Values values, cells::CellBlock& block) {
   for (auto& [name, numbers] : values.arrays) {
-    if (numbers.empty()) continue;  // used by a vector
+    if (numbers.empty()) continue;  // the array is already part of a vector
     const std::string stem = name.substr(0, name.size() - 1);
     const std::string_view last = std::string_view(name).substr(stem.size());
     std::vector<double>*const x = values.find(stem + "X"), *const y = values.find(stem + "Y"),
@@ -93,8 +93,8 @@ std::vector<std::string> field_names(const CgnsZone& zone, const CgnsSolution& s
   return names;
 }
 
-/// The zone's points or cells that have a solution's values, in order; empty if all have. Throws Error(bad_input) for
-/// those that the zone does not have.
+/// Returns the zone's points or cells for which a solution has values, in order; empty if it has values for all. Throws
+/// Error(bad_input) for points or cells that the zone does not have.
 std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& solution, bool of_cells) {
   const std::vector<cgsize_t> size = lengths(zone, of_cells);
   const std::size_t axes = size.size(), count = product(zone, of_cells);
@@ -136,7 +136,7 @@ std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& sol
   return places;
 }
 
-/// The first solution with a value determines it.
+/// Reads a solution. If several solutions have a value, the first one is used.
 void read_solution(const CgnsZone& zone, const CgnsSolution& solution, const CgnsNamesakes& namesakes, Values& values) {
   const bool of_cells = values.association == scene::Association::cell;
   const std::size_t count = product(zone, of_cells);
@@ -234,7 +234,7 @@ void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& n
   for (const CgnsSolution& solution : solutions_of(zone, step)) {
     const bool is_vertex = solution.location == CGNS_ENUMV(Vertex),
                is_cell = solution.location == CGNS_ENUMV(CellCenter);
-    // In parts of a zone, cells are identified by their elements' numbers.
+    // If a solution covers parts of a zone, cells are identified by the numbers of their elements.
     const bool is_known =
         !solution.is_part() || ((solution.set == CGNS_ENUMV(PointRange) || solution.set == CGNS_ENUMV(PointList)) &&
                                 (is_vertex || zone.is_structured() || is_plain(zone)));

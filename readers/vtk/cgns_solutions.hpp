@@ -19,13 +19,13 @@ using CgnsName = std::array<char, 34>;
 /// Whether a zone has three-dimensional cells.
 bool is_mesh(const CgnsZone& zone);
 
-/// Numbers of points or cells along each index of a zone.
+/// Returns the number of points or cells along each index of a zone.
 std::vector<cgsize_t> lengths(const CgnsZone& zone, bool of_cells);
 
-/// Total number of points or cells. Throws Error(bad_input) for 2^32 and more.
+/// Returns the total number of points or cells. Throws Error(bad_input) for 2^32 and more.
 std::size_t product(const CgnsZone& zone, bool of_cells);
 
-/// The names of a zone's grids or solutions at a step; empty if the zone does not list them.
+/// Returns the names of a zone's grids or solutions at a step; empty if the zone does not list them.
 std::vector<std::string> zone_names_at_step(const CgnsZone& zone, std::uint64_t step, std::string_view word);
 
 /// A solution of a zone.
@@ -33,21 +33,23 @@ struct CgnsSolution {
   int number = 0;
   std::string name{};
   CGNS_ENUMT(GridLocation_t) location{};
-  CGNS_ENUMT(PointSetType_t) set = CGNS_ENUMV(PointSetTypeNull);  ///< of the points or cells that have values, or null
+  CGNS_ENUMT(PointSetType_t)
+  set = CGNS_ENUMV(PointSetTypeNull);  ///< how the points or cells with values are listed;
+                                       ///< null: all have values
   cgsize_t in_set = 0;
 
   [[nodiscard]] bool is_part() const { return set != CGNS_ENUMV(PointSetTypeNull); }
 };
 
-/// The solutions of a step; all if the zone lists none.
+/// Returns the solutions of a zone at a step; all solutions if the zone does not list them.
 std::vector<CgnsSolution> solutions_of(const CgnsZone& zone, std::uint64_t step);
 
-/// Locations and names of fields that several solutions have there.
+/// Pairs of location and field name that occur in several solutions.
 using CgnsNamesakes = std::set<std::pair<CGNS_ENUMT(GridLocation_t), std::string>>;
 CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step);
 
-/// Adds the fields of a zone's points and cells. Fields with equal names are named SOLUTION/FIELD. Missing values are
-/// NaN.
+/// Adds the fields of a zone's points and cells. If several solutions have a field of this name, the field is named
+/// SOLUTION/FIELD. Missing values are NaN.
 void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
                 cells::CellBlock& block, std::vector<std::string>& notes);
 

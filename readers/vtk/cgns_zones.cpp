@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/cgns_solutions.hpp"
-// The library's macros come first.
+// Included after the library, whose macros must come first.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ std::vector<CgnsZone> zones_of(const CgnsFile& file, const std::string& source) 
   return zones;
 }
 
-/// The coordinate grid of a zone at a step.
+/// Returns the coordinate grid of a zone at a step.
 int grid_at_step(const CgnsZone& zone, std::uint64_t step) {
   const std::vector<std::string> names = zone_names_at_step(zone, step, "GridCoordinates");
   int count = 0;

@@ -10,12 +10,12 @@
 
 namespace tessera::readers {
 
-/// Reads a CGNS file by the CGNS library if VTK's reader would misidentify its cells or refuse it: if faces are
-/// numbered before or among the cells, sections are not in the order of their numbers, or there are sections of mixed
-/// elements, polyhedra or elements of order 2; if coordinates are R, Theta and Z, solutions cover only some points or
-/// cells, or several solutions at a location have fields of one name. Otherwise, and if the library cannot open the
-/// file, no value. The request's `time_step` and share of the zones (`part` of `parts`) as in other readers. Throws
-/// Error(bad_input).
+/// Reads a CGNS file by the CGNS library if VTK's reader would misidentify cells or refuse the file. This is the case
+/// if faces are numbered before or among the cells, if sections are not in the order of their numbers, or if there are
+/// sections of mixed elements, polyhedra or elements of order 2. It is also the case if coordinates are R, Theta and Z,
+/// if solutions have values for only some points or cells, or if several solutions at a location have fields of the
+/// same name. No value for other files, and for files that the library cannot open. The request's `time_step` and share
+/// of the zones (`part` of `parts`) are as in other readers. Throws Error(bad_input).
 std::optional<io::ForeignContents> read_cgns_zones(Holdings& holdings, const std::filesystem::path& file,
                                                    const nlohmann::json& request);
 

@@ -26,7 +26,7 @@ bool is_count(const std::string& word) {
   return !word.empty() && word.size() < 9 && word.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Removes the numbers of a time set and a file set from the beginning of the words.
+/// Removes the numbers of a time set and a file set from the beginning of the words, and returns them.
 std::pair<int, int> take_sets(std::vector<std::string>& words, std::size_t names) {
   int time_set = 1, file_set = 0;
   for (int k = 0; k < 2 && words.size() > names && is_count(words.front()); ++k) {
@@ -84,7 +84,8 @@ void EnsightCase::read_geometry(const std::string& line) {
   (is_model ? named_ : beside_).push_back({"model", "", without_quotes(words.front()), time_set, file_set});
 }
 
-/// `scalar per node: [ts] [fs] NAME FILE`; a complex variable has two files and a frequency; a constant has no file.
+/// Parses a line `scalar per node: [ts] [fs] NAME FILE`. A complex variable has two files and a frequency; a constant
+/// has no file.
 void EnsightCase::read_variable(const std::string& line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string::npos) return;
@@ -115,7 +116,8 @@ void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string&
     char* end = nullptr;
     const double number = std::strtod(word.c_str(), &end);
     if (end == word.c_str()) continue;
-    if (list.find("time values") != std::string::npos) set->times.push_back(static_cast<float>(number));  // as in VTK
+    if (list.find("time values") != std::string::npos)
+      set->times.push_back(static_cast<float>(number));  // rounded to float, as in VTK
     if (list.find("filename numbers") != std::string::npos) set->numbers.push_back(static_cast<long>(number));
     if (list.find("filename start number") != std::string::npos) set->start = static_cast<long>(number);
     if (list.find("filename increment") != std::string::npos) set->increment = static_cast<long>(number);
@@ -165,7 +167,7 @@ std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
   std::vector<Missing> missing;
   for (const Named& named : named_) {
     const std::string file = place_of(named, time).file;
-    std::error_code unknown;  // for example a circular link, which is not a file either
+    std::error_code unknown;  // an error means, for example, a circular link, which is not a file either
     if (!file.empty() && !std::filesystem::is_regular_file(folder_ / file, unknown))
       missing.push_back({named.variable, file, named.of_points});
   }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::string_view begin_words = "BEGIN TIME STEP", end_words = "END TIME STEP";
 
-/// The text of a step: the lines before all steps (`C Binary`), and its own.
+/// The text of a step: the lines that precede all steps (`C Binary`), and the lines of the step.
 struct StepText {
   std::string_view before, lines;
 };
@@ -34,7 +34,7 @@ StepText step_text(std::string_view text, std::size_t step, bool in_set) {
   constexpr std::size_t record = 80;
   const std::size_t after = text.find_first_not_of(" \t\r", begin + begin_words.size());
   const bool is_text = after == std::string_view::npos || text[after] == '\n';
-  // Fortran records have their length before and after them.
+  // Fortran stores the length of each record before and after the record.
   const std::string_view mark = text.substr(std::min(text.size(), begin + record), 4);
   const std::size_t mark_bytes =
       !is_text && begin >= 4 && mark.size() == 4 && mark == text.substr(begin - 4, 4) ? 4 : 0;

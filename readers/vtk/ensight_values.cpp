@@ -38,7 +38,7 @@
 namespace tessera::readers {
 namespace {
 
-// VTK's readers keep these for their subclasses.
+// Gives access to tables that VTK's readers keep for their subclasses.
 struct Tables : vtkEnSightReader {
   static vtkIdType part(vtkEnSightReader& reader, int id) { return (reader.*(&Tables::InsertNewPartId))(id); }
   static vtkIdType unstructured(vtkEnSightReader& reader, vtkIdType part) {
@@ -68,7 +68,7 @@ class ValuesText {
 
   [[nodiscard]] bool begins_with(std::string_view word) const { return text_.substr(at_).starts_with(word); }
 
-  /// Whether only blanks remain.
+  /// Whether only blanks follow.
   [[nodiscard]] bool is_at_end() const { return std::ranges::all_of(text_.substr(at_), is_blank); }
 
   /// Whether a binary file ends within the record that begins a part.
@@ -77,13 +77,13 @@ class ValuesText {
     return is_binary_ && !rest.empty() && rest.size() < 80 && part_word.starts_with(rest.substr(0, part_word.size()));
   }
 
-  /// Fortran records have their length, 80 bytes, before them.
+  /// Whether the file has Fortran records, which begin with their length, here 80 bytes.
   [[nodiscard]] bool has_records() const {
     return is_binary_ &&
            (text_.starts_with(std::string_view("P\0\0\0", 4)) || text_.starts_with(std::string_view("\0\0\0P", 4)));
   }
 
-  /// The next header without surrounding blanks; no value at the end of the file.
+  /// Returns the next header without surrounding blanks; no value at the end of the file.
   std::optional<std::string> header() {
     constexpr std::size_t record = 80;
     std::string_view line;
@@ -105,14 +105,14 @@ class ValuesText {
 
   void skip_description() { is_binary_ ? static_cast<void>(at_ = std::min(text_.size(), at_ + 80)) : next_line(); }
 
-  /// A small integer, in a line or record of its own; 0 if there is none.
+  /// Reads a small integer from a line or record of its own; 0 if there is none.
   int number() {
     if (!is_binary_) return number_in(header().value_or(""));
     std::uint32_t number = 0;
     if (text_.size() - at_ < sizeof number) return at_ = text_.size(), 0;
     std::memcpy(&number, text_.data() + at_, sizeof number);
     at_ += sizeof number;
-    // It is small, so in the wrong byte order it is larger.
+    // The number is small, so the wrong byte order would give a larger number.
     return static_cast<int>(std::min({number, __builtin_bswap32(number), 0x7fffffffu}));
   }
 
@@ -135,7 +135,7 @@ class ValuesText {
     return are_there ? Found::all : Found::too_few;
   }
 
-  /// Numbers of EnSight 6 may be adjacent without blanks: each has at most 12 characters.
+  /// Reads numbers. In EnSight 6 they may be adjacent without blanks, with at most 12 characters each.
   Found numbers_of_text(std::uint64_t count, bool are_reals) {
     if (count == 0) return Found::all;
     for (; count > 0; --count) {
@@ -155,8 +155,9 @@ class ValuesText {
     return Found::all;
   }
 
-  /// Whether a number at the very end has fewer characters after its point than all others, which have equal numbers of
-  /// them and an exponent: a fixed-width format, as EnSight writes.
+  /// Whether a number at the very end of the file is cut off: it has fewer characters after its point than all others,
+  /// which have an exponent and the same number of characters after the point. EnSight writes this kind of fixed-width
+  /// format.
   bool is_cut(std::string_view number) {
     const std::size_t length = number.size() - std::min(number.size(), number.find('.'));
     if (at_ == text_.size() && decimals_ && is_even_ && length < *decimals_) return true;
@@ -184,7 +185,7 @@ class ValuesWalk {
         text_(text, reader.IsA("vtkEnSightGoldBinaryReader") != 0 || reader.IsA("vtkEnSight6BinaryReader") != 0,
               is_gold_) {}
 
-  /// See values_in().
+  /// Checks the file; see values_in().
   EnsightValues walk() {
     if (text_.has_records() || text_.begins_with("BEGIN TIME STEP")) return {};
     text_.skip_description();
@@ -223,8 +224,8 @@ class ValuesWalk {
     return text_.reals(static_cast<std::uint64_t>(tuples) * static_cast<std::uint64_t>(values_.components));
   }
 
-  /// The values after a header: for all tuples, for all except those of one value (`undef`), or for listed ones
-  /// (`partial`).
+  /// Reads the values after a header: for all tuples, for all except those with a certain value (`undef`), or for
+  /// listed tuples (`partial`).
   Found values_after(std::string_view header, vtkIdType tuples) {
     if (header.ends_with(" undef")) {
       if (const Found found = text_.reals(1); found != Found::all) return found;
@@ -235,7 +236,7 @@ class ValuesWalk {
     return reals(tuples);
   }
 
-  /// Number of nodes shared by all unstructured parts of EnSight 6.
+  /// Returns the number of nodes, which all unstructured parts of EnSight 6 share.
   vtkIdType nodes() {
     vtkPoints* points = nullptr;
     if (auto* const text = vtkEnSight6Reader::SafeDownCast(&reader_)) points = TextNodes::of(*text);
@@ -243,7 +244,7 @@ class ValuesWalk {
     return points != nullptr ? points->GetNumberOfPoints() : 0;
   }
 
-  /// Continues up to the header after the part.
+  /// Reads a part, up to the next header.
   Found points_of(vtkDataSet& grid, std::optional<std::string>& line) {
     Found found = Found::all;
     if (grid.GetNumberOfPoints() > 0) {
@@ -278,7 +279,8 @@ class ValuesWalk {
     return Found::all;
   }
 
-  /// VTK leaves the values of cells of other types uninitialized.
+  /// Sets values of cells to NaN if the file has no values for their type, because VTK leaves these values
+  /// uninitialized.
   void blank_types(vtkDataSet& grid, vtkIdType index, const std::vector<bool>& is_there) {
     vtkDataArray* const array = grid.GetCellData()->GetArray(values_.variable.c_str());
     for (int type = 0; array != nullptr && type < Tables::types; ++type) {
@@ -289,7 +291,7 @@ class ValuesWalk {
     }
   }
 
-  /// The names of the missing parts with solid cells.
+  /// Returns the names of the parts with solid cells that have no values.
   std::vector<std::string> absent(const std::vector<bool>& is_there) {
     std::vector<std::string> names;
     for (unsigned part = 0; part < parts_.GetNumberOfBlocks(); ++part) {

@@ -13,14 +13,15 @@ class vtkGenericEnSightReader;
 namespace tessera::readers {
 
 struct EnsightValues {
-  /// Where a file ends that has too few numbers for its parts: "inside part 2", "inside the nodes" (EnSight 6), "after
-  /// part 1", "before its values". Empty if it is complete.
+  /// Description of the place where a file with too few numbers ends: "inside part 2", "inside the nodes" (EnSight 6),
+  /// "after part 1", "before its values". Empty if the file is complete.
   std::string end;
-  std::vector<std::string> absent;  ///< parts with solid cells without values, which Gold files may omit
+  std::vector<std::string> absent;  ///< parts with solid cells for which the file, as Gold allows, has no values
 };
 
-/// For the parts that `reader` has read into `data`. Checks only the plain layout, not several steps in a file or
-/// Fortran records. Cells of types without values become NaN in `data`.
+/// Checks the file of a variable for the parts that `reader` has read into `data`. Only the plain layout is checked,
+/// not files with several steps or with Fortran records. In `data`, the values of cells become NaN if the file has no
+/// values for cells of their type.
 EnsightValues values_in(vtkGenericEnSightReader& reader, vtkDataObject& data, const EnsightCase::Values& values);
 
 /// Whether a file ends with the word `part`: VTK's text reader crashes on these files.

@@ -20,8 +20,8 @@ struct Middle {
   std::initializer_list<std::uint8_t> corners;
 };
 
-/// For cells of this type and number of nodes, which only one kind of Exodus element has, and whose middle nodes are in
-/// one of two orders.
+/// Corrects the order of cells with this type and number of nodes, which only one kind of Exodus element has. The
+/// middle nodes of that kind are in one of two orders.
 void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initializer_list<Middle> middles) {
   const cells::NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
   const auto far_from_middles = [&](std::span<const std::uint32_t> nodes) {
@@ -63,7 +63,7 @@ ExodusElement exodus_element(const std::string& topology, std::int64_t nodes) {
     std::string_view beginning;
     cells::CurvedFamily shape;
     std::int64_t corners;
-    CellType other;  ///< its type with other numbers of nodes
+    CellType other;  ///< type if the number of nodes is different
   };
   static constexpr Solid solids[] = {{"HEX", cells::CurvedFamily::hexahedron, 8, CellType::lagrange_hexahedron},
                                      {"TET", cells::CurvedFamily::tet, 4, CellType::lagrange_tetrahedron},

@@ -14,24 +14,25 @@
 
 namespace tessera::readers {
 
-/// A block's topology in upper case: "HEX", "HEX20", "TETRA", ...
+/// Returns the topology of a block in upper case: "HEX", "HEX20", "TETRA", ...
 std::string exodus_topology(const ex_block& info);
 
-/// The elements of a block. Solids with nodes that no supported type has are drawn by their corners.
+/// The type of a block's elements. If no supported type has the number of nodes of a solid, its corners are drawn.
 struct ExodusElement {
-  std::optional<CellType> type{};           ///< `quad` for all non-solids, no value for unknown elements
-  const cells::NodeOrder* order = nullptr;  ///< null unless it is a solid of the table
+  std::optional<CellType> type{};           ///< `quad` for all non-solids; no value for unknown elements
+  const cells::NodeOrder* order = nullptr;  ///< null unless the element is a solid in the table of node orders
 };
 
-/// Identified by the first letters of its topology and the number of nodes, which names may omit.
+/// Identifies elements by the first letters of their topology and their number of nodes, which names may omit.
 ExodusElement exodus_element(const std::string& topology, std::int64_t nodes);
 
-/// The corners of a solid's side (counted from 1, as in the manual), as indices in the element from 0; empty for other
-/// topologies, and for sides that do not exist.
+/// Returns the corners of a side of a solid, as indices from 0 in the element. Sides are counted from 1, as in the
+/// manual. Empty for other topologies, and for sides that do not exist.
 std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int64_t side);
 
-/// For a block with its points, whose tetrahedra of 15 nodes and wedges of 21 are in the manual's order: if all of one
-/// kind fit better in the order of the library's side sets or of Ioss, they are reordered to that.
+/// Corrects the order of middle nodes. `block` has points, and its tetrahedra of 15 nodes and wedges of 21 nodes are in
+/// the order of the manual. If all cells of one of these kinds fit better in the order of the library's side sets or of
+/// Ioss, their nodes are reordered to that order.
 void settle_exodus_middles(cells::CellBlock& block);
 
 }  // namespace tessera::readers

@@ -67,7 +67,7 @@ void ExodusFaces::add(std::int64_t id, const ex_block& info, std::int64_t points
       if (number < 1 || static_cast<std::size_t>(number) >= starts_.size())
         fail_(fmt::format("block {} has face {}, the file holds {}", id, number, starts_.size() - 1));
       const auto face = static_cast<std::size_t>(number) - 1;
-      // At most two cells share a face. More could exceed the file's size many times.
+      // At most two cells share a face. More uses could make the data many times as large as the file.
       if (++times_used_[face] > 2) fail_(fmt::format("face {} is of more than two elements", number));
       block.faces.push_back(static_cast<std::uint32_t>(starts_[face + 1] - starts_[face]));
       for (std::size_t v = starts_[face]; v < starts_[face + 1]; ++v) {

@@ -31,11 +31,11 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// An open file. Every failing call throws Error.
+/// An open file. Every call that fails throws Error.
 class ExodusFile {
  public:
   explicit ExodusFile(const std::filesystem::path& file) : source_(file.string()) {
-    // ex_open prints a message if NetCDF cannot open the file, so NetCDF tries first.
+    // ex_open prints a message if NetCDF cannot open the file, so the file is opened by NetCDF first.
     if (nc_open(file.c_str(), NC_NOWRITE, &id_) != NC_NOERR) {
       id_ = -1;
       fail("it cannot be opened as a NetCDF file, which Exodus files are");
@@ -46,7 +46,7 @@ class ExodusFile {
       id_ = -1;
       fail(fmt::format("it has {} bytes of at least {}", size, least));
     }
-    ex_opts(0);  // the library does not print messages
+    ex_opts(0);  // makes the library print no messages
     int double_size = sizeof(double), file_size = 0;
     float version = 0;
     id_ = ex_open(file.c_str(), EX_READ, &double_size, &file_size, &version);
@@ -65,11 +65,11 @@ class ExodusFile {
   void require(int status, const char* what) const {
     if (status < 0) fail(fmt::format("{} cannot be read", what));
   }
-  /// For calls that set nothing if they return a warning.
+  /// Called for functions that do not set anything if they return a warning.
   void require_values(int status, const char* what) const { require(status == EX_NOERR ? status : EX_FATAL, what); }
 
-  /// The array of a nodal variable. Without `file_size`, which meshio omits, the library searches for one array of all
-  /// variables, and finds none.
+  /// Returns the array of a nodal variable. Needed because without `file_size`, which meshio omits, the library
+  /// searches for one array of all variables, and finds none.
   [[nodiscard]] std::optional<int> node_array(int index) const {
     int array = 0, axes = 0;
     if (nc_inq_varid(id_, "vals_nod_var", &array) == NC_NOERR ||
@@ -78,7 +78,7 @@ class ExodusFile {
       return std::nullopt;
     return array;
   }
-  /// Number of values of each node.
+  /// Returns the number of values per node.
   [[nodiscard]] std::size_t numbers_a_node(int index) const {
     std::array<int, NC_MAX_VAR_DIMS> axes{};
     int count = 0;
@@ -96,7 +96,7 @@ class ExodusFile {
     throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", source_, what));
   }
 
-  /// Names of the variables of nodes or elements, without trailing blanks.
+  /// Returns the names of the variables of nodes or elements, without trailing blanks.
   [[nodiscard]] std::vector<std::string> variable_names(ex_entity_type type) const {
     int count = 0;
     if (ex_get_variable_param(id_, type, &count) < 0 || count < 0 || count > 100000) return {};
@@ -119,25 +119,25 @@ class ExodusFile {
 
 struct ElementBlock {
   std::int64_t id = 0;
-  std::uint64_t first = 0, count = 0;  ///< cells of the mesh
+  std::uint64_t first = 0, count = 0;  ///< cells of the mesh that are from this block
   std::vector<std::uint64_t> of{};     ///< their indices in the block, ascending; empty: all
 };
 
 /// One variable, or three that form a vector.
 struct Variable {
   std::string name;
-  std::vector<int> indices;  ///< in the file, from 1
+  std::vector<int> indices;  ///< indices of the variables in the file, from 1
 };
 
-/// "V_x" "V_y" "V_z", "VX" "VY" "VZ": three names that differ only in their last letter; if they may be part of a
-/// tensor, as "Sxx" "Sxy" "Sxz", they must be adjacent.
+/// Groups names like "V_x" "V_y" "V_z" and "VX" "VY" "VZ" to vectors: three names that differ only in their last
+/// letter. If the names may be part of a tensor, like "Sxx" "Sxy" "Sxz", they must be adjacent.
 std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
   const auto with_last = [](std::string name, char letter) {
     name.back() = letter;
     return name;
   };
   const auto last_of = [](const std::string& name) { return name.size() < 2 ? ' ' : lower_case(name.back()); };
-  std::map<std::string, std::size_t> places;  // of names whose last letter is lower case
+  std::map<std::string, std::size_t> places;  // index of each name, with the last letter in lower case
   for (std::size_t k = 0; k < names.size(); ++k) places.emplace(with_last(names[k], last_of(names[k])), k);
   std::vector<Variable> variables;
   std::vector<bool> is_used(names.size());
@@ -178,7 +178,7 @@ void read_values(const ExodusFile& file, int step, ex_entity_type type, int inde
                       "a variable");
 }
 
-/// The element blocks' values at cells [first, first + out.size()); NaN in blocks without the variable.
+/// Reads values of element blocks at cells [first, first + out.size()); NaN in blocks that do not have the variable.
 void read_cell_values(const ExodusFile& file, int step, int index, std::span<const ElementBlock> blocks,
                       std::span<const int> has_variable, std::uint64_t first, std::span<double> out) {
   std::fill(out.begin(), out.end(), nan);
@@ -199,7 +199,7 @@ void read_cell_values(const ExodusFile& file, int step, int index, std::span<con
   }
 }
 
-/// Converts a reader of one variable's values to a field's reader of components and magnitude.
+/// Converts a function that reads the values of one variable to a field's function that reads components and magnitude.
 template <class ReadOne>
 cells::BlockField make_field(const Variable& variable, scene::Association association, std::size_t tuples,
                              ReadOne read_one) {
@@ -225,7 +225,7 @@ cells::BlockField make_field(const Variable& variable, scene::Association associ
   return field;
 }
 
-/// Reads one file; a class so that its steps share the open file and the counts.
+/// Reads one file. This is a class so that the steps of reading share the open file and the counts.
 class Reading {
  public:
   Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, cells::BlockChoice choice,
@@ -234,7 +234,7 @@ class Reading {
         choice_(std::move(choice)),
         with_surfaces_(with_surfaces),
         file_(std::make_shared<ExodusFile>(path)),
-        // HDF5 compresses: a value may then take less than a byte. NetCDF classic does not.
+        // In compressed HDF5, a value may take less than a byte. NetCDF classic files are not compressed.
         most_values_(io::require_file(path) * (io::read_beginning(path, 3).starts_with("CDF") ? 1 : 1040)),
         faces_(file_->id(), most_values_, [file = file_.get()](const std::string& what) { file->fail(what); }) {
     file_->require(ex_get_init_ext(file_->id(), &init_), "the header");
@@ -330,7 +330,7 @@ class Reading {
     const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(has_corners ? info.num_nodes_per_entry : 0, 0));
     if (nodes > 0 && count > most_values_ / nodes)
       file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
-    // For faces, only the corners are used.
+    // Only the corners of faces are used.
     const std::string topology = exodus_topology(info);
     const bool is_triangle = topology.starts_with("TRI") || nodes == 3 || nodes == 6 || nodes == 7;
     block_.types.insert(block_.types.end(), count,
@@ -414,7 +414,7 @@ class Reading {
     const std::vector<Variable> variables = group_vectors(file_->variable_names(EX_ELEM_BLOCK));
     std::size_t count = 0;
     for (const Variable& variable : variables) count += variable.indices.size();
-    std::vector<int> truth(blocks_.size() * count, 0);  // a row per block
+    std::vector<int> truth(blocks_.size() * count, 0);  // one row per block
     if (!truth.empty())
       file_->require(ex_get_truth_table(file_->id(), EX_ELEM_BLOCK, static_cast<int>(blocks_.size()),
                                         static_cast<int>(count), truth.data()),
@@ -439,8 +439,8 @@ class Reading {
   std::string source_;
   cells::BlockChoice choice_;
   bool with_surfaces_ = false;
-  bool has_sides_ = false;            ///< faces are among the cells; they have no values of element variables
-  std::shared_ptr<ExodusFile> file_;  // fields keep it open
+  bool has_sides_ = false;            ///< the cells include sides, which have no values of element variables
+  std::shared_ptr<ExodusFile> file_;  // fields keep the file open
   ex_init_params init_{};
   std::uint64_t most_values_ = 0;
   ExodusFaces faces_;

@@ -42,7 +42,7 @@ void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids,
 
 std::string exodus_name(int file, ex_entity_type type, std::int64_t id) {
   std::array<char, 256> name{};
-  ex_get_name(file, type, id, name.data());  // if it fails, there is no name
+  ex_get_name(file, type, id, name.data());  // fails if the set has no name
   return {name.data(), ::strnlen(name.data(), name.size())};
 }
 
@@ -94,7 +94,7 @@ namespace {
 
 constexpr std::uint8_t polygon = vtk_number(CellType::polygon);
 
-/// Adds the faces that are sides of solids; returns false without adding any if one is not.
+/// Adds the faces of a side set if all of them are sides of solids. Otherwise adds nothing and returns false.
 bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::span<const std::int64_t> sides,
                          std::int64_t points, std::uint64_t most_values,
                          const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks,
@@ -108,7 +108,7 @@ bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::
     const std::size_t of = block_of(elements[face]);
     if (of == blocks.size() || exodus_side(blocks[of].topology, sides[face]).empty()) return false;
   }
-  std::vector<std::vector<std::int64_t>> nodes(blocks.size());  // of the blocks used
+  std::vector<std::vector<std::int64_t>> nodes(blocks.size());  // nodes of the blocks that the set uses
   for (std::size_t face = 0; face < elements.size(); ++face) {
     const std::size_t of = block_of(elements[face]);
     const std::uint64_t first = of == 0 ? 0 : blocks[of - 1].end;
@@ -146,14 +146,14 @@ void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t mos
   if (ex_get_set(file, EX_SIDE_SET, id, elements.data(), sides.data()) < 0) fail("a side set cannot be read");
   if (add_sides_of_solids(file, elements, sides, points, most_values, fail, blocks, block)) return;
   if (ex_get_side_set_node_list_len(file, id, &length) < 0) fail("a side set cannot be read");
-  // At most 32 nodes of an element belong to one face.
+  // An element has at most 32 nodes in one face.
   if (length < 0 || length > 32 * count) fail(fmt::format("it promises a side set of {} corners", length));
   std::vector<std::int64_t> counts(static_cast<std::size_t>(count)), nodes(static_cast<std::size_t>(length));
   if (ex_get_side_set_node_list(file, id, counts.data(), nodes.data()) < 0) fail("a side set cannot be read");
   std::size_t at = 0;
   for (const std::int64_t size : counts) {
     if (size < 0 || at + static_cast<std::size_t>(size) > nodes.size()) fail("a side set cannot be read");
-    // Higher-order nodes follow the corners: 6 and 7 nodes form a triangle, 8 and 9 a quadrilateral.
+    // Nodes of higher order follow the corners: 6 and 7 nodes form a triangle, 8 and 9 a quadrilateral.
     const std::int64_t corners = size == 6 || size == 7 ? 3 : size == 8 || size == 9 ? 4 : size;
     for (std::int64_t k = 0; k < corners; ++k) {
       const std::int64_t node = nodes[at + static_cast<std::size_t>(k)];

@@ -23,7 +23,7 @@ double cells_in(const Extent& extent) {
 }
 
 double cells_covered(std::span<const Extent> pieces) {
-  // The boxes between all planes at which pieces begin or end: few, because pieces are in rows.
+  // All planes at which pieces begin or end. There are only a few boxes between them, because pieces are in rows.
   std::array<std::vector<int>, 3> planes;
   double boxes = 1, sum = 0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -34,8 +34,7 @@ double cells_covered(std::span<const Extent> pieces) {
   }
   for (const Extent& piece : pieces) sum += cells_in(piece);
   if (boxes * static_cast<double>(pieces.size()) > 1e9)
-    return sum;  // thousands of pieces that are not in rows: uses
-                 // the sum of their sizes
+    return sum;  // for thousands of pieces that are not in rows, the sum of their sizes is used
   double covered = 0;
   for (std::size_t k = 1; k < planes[2].size(); ++k)
     for (std::size_t j = 1; j < planes[1].size(); ++j)

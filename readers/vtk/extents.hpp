@@ -7,21 +7,21 @@
 
 namespace tessera::readers {
 
-/// First and last point along each axis; the cells are between them.
+/// First and last point index along each axis. Cells are between these points.
 using Extent = std::array<int, 6>;
 
 bool holds(const Extent& extent, const Extent& part);
 
-/// 0 if it is flat or empty.
+/// Returns the number of cells; 0 if the extent is flat or empty.
 double cells_in(const Extent& extent);
 
-/// Number of cells in the union of the pieces, however these overlap.
+/// Returns the number of cells in the union of the pieces, which may overlap.
 double cells_covered(std::span<const Extent> pieces);
 
-/// The smallest extent that contains all pieces.
+/// Returns the smallest extent that contains all pieces.
 Extent box_of(std::span<const Extent> pieces);
 
-/// The six numbers as text.
+/// Returns the six numbers as text.
 std::string words_of(const Extent& extent);
 
 }  // namespace tessera::readers

@@ -10,7 +10,8 @@
 namespace tessera::readers {
 namespace {
 
-/// Limit of the deepest cells along an axis: the capacity of the library's lattice (cells/amr/amr_leaves.cpp).
+/// Largest number of cells of the deepest level along an axis, which is the capacity of the library's lattice
+/// (cells/amr/amr_leaves.cpp).
 constexpr std::int64_t most_cells = 1 << 29;
 
 constexpr const char* remedy = "it is damaged, write it again";
@@ -30,7 +31,8 @@ class Descent {
 
   ForestLeaves leaves() {
     for (std::size_t t = 0; t < forest_.trees.size(); ++t) add_tree(t);
-    // The lattice is that of the deepest leaf, which may be less deep than the file allows.
+    // The lattice is that of the deepest leaf, which may be on a higher level than the deepest one that the file
+    // allows.
     std::vector<std::int32_t> scale(static_cast<std::size_t>(leaves_.levels), 1);
     for (std::size_t level = scale.size() - 1; level-- > 0;) scale[level] = scale[level + 1] * forest_.branching;
     for (std::size_t l = 0; l < leaves_.level.size(); ++l)
@@ -53,7 +55,7 @@ class Descent {
     return node;
   }
 
-  /// Refuses cells of a level that is too deep for the lattice.
+  /// Throws for cells of a level that is too deep for the lattice.
   void require_depth(std::size_t t, int level) const {
     std::int64_t cells = *std::max_element(forest_.roots.begin(), forest_.roots.end());
     for (int l = 0; l <= level; ++l) {
@@ -95,7 +97,7 @@ class Descent {
   }
 
   void add_children(std::size_t t, const Node& parent, bool is_hidden, std::size_t cell) {
-    // So that memory is proportional to the file.
+    // Checked so that the memory is proportional to the size of the file.
     if (next_.size() + children_ > forest_.trees[t].cells) refuse_count(t, cell + next_.size() + children_);
     const std::int32_t b = forest_.branching;
     for (std::int32_t k = 0; k < b; ++k)
@@ -111,14 +113,14 @@ class Descent {
     leaves_.levels = std::max(leaves_.levels, level + 1);
   }
 
-  /// For each of a tree's cells, its index in depth-first order.
+  /// Computes the index in depth-first order of each of a tree's cells.
   void order_by_descent(const StoredTree& tree) {
     std::vector<std::size_t> elder(tree.cells, 0);  // the first child of each cell, level by level
     std::size_t next = 1;
     for (std::size_t cell = 0; cell < tree.cells && cell < tree.bits; ++cell)
       if (is_divided(tree, cell)) elder[cell] = next, next += children_;
     order_.assign(tree.cells, 0);
-    if (next != tree.cells) return;  // the number of cells is refused later
+    if (next != tree.cells) return;  // a wrong number of cells is reported later
     std::size_t made = 1;
     std::vector<std::size_t> open{0};
     while (!open.empty()) {

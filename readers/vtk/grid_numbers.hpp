@@ -21,20 +21,22 @@ struct GridNumbers {
   [[nodiscard]] std::vector<double> as_doubles() const;
 };
 
-/// Doubles unchanged, or rounded to float32.
+/// Copies doubles, rounded to float32 if `type` is that.
 GridNumbers numbers_of(std::span<const double> values, NumberType type = NumberType::float64);
 
-/// Which axes of a stored array are the grid's: its axis `along[a]` is x, y or z. All its other axes have length 1.
+/// Maps the axes x, y and z of a grid to those of a stored array: axis a is the array's axis `along[a]`. All other axes
+/// of the array have length 1.
 using GridAxes = std::array<std::size_t, 3>;
 
-/// Reorders items of `width` bytes, whose axes have these lengths, the first the slowest, to grid order: x fastest.
+/// Reorders items of `width` bytes to grid order, x fastest. `lengths` are the lengths of the stored axes, the slowest
+/// first.
 std::vector<std::byte> in_grid_order(std::vector<std::byte> items, std::size_t width,
                                      std::span<const std::size_t> lengths, const GridAxes& along);
 
-/// Holds a field with its range; `components` numbers per tuple.
+/// Adds a field with its range; `components` numbers per tuple.
 io::ForeignArray hold_field_numbers(Holdings& holdings, std::string name, GridNumbers numbers, int components = 1);
 
-/// Holds coordinates, points and other numbers without a range.
+/// Adds coordinates, points or other numbers, without a range.
 io::ForeignArray hold_numbers(Holdings& holdings, GridNumbers numbers, int components = 1);
 
 }  // namespace tessera::readers

@@ -34,7 +34,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Names of the kinds of grids.
+/// Names of a kind of grid.
 struct KindWords {
   const char *whole, *piece, *extension;
 };
@@ -52,17 +52,17 @@ KindWords words_of(GridKind kind) {
 
 struct Piece {
   std::filesystem::path file;
-  Extent extent;  ///< as stated in the parallel file
+  Extent extent;  ///< extent as stated in the parallel file
 };
 
 /// The contents of a parallel file.
 struct WholeGrid {
   Extent extent{};
   std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};  ///< for images
-  std::vector<Piece> pieces;                                ///< those with cells
+  std::vector<Piece> pieces;                                ///< pieces with cells
 };
 
-/// Numbers of an attribute; no value if there are fewer.
+/// Parses the numbers of an attribute; no value if there are too few.
 template <class T, std::size_t count>
 std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
   std::istringstream words(text);
@@ -72,7 +72,7 @@ std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
   return numbers;
 }
 
-/// Reads only the parallel file.
+/// Reads only the parallel file, not the pieces.
 WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
   allow_for(file);
   const io::WholeFile mapped(file);
@@ -143,7 +143,7 @@ Extent extent_of(vtkDataSet& data) {
   return extent;
 }
 
-/// Tuples of a box of points, or of cells, which are one fewer per axis.
+/// The tuples of a box of points, or of a box of cells, which has one cell fewer than points along each axis.
 class TupleBox {
  public:
   TupleBox(const Extent& extent, bool points) {
@@ -154,7 +154,7 @@ class TupleBox {
   }
   [[nodiscard]] vtkIdType total() const { return count_[0] * count_[1] * count_[2]; }
 
-  /// Copies the tuples of this box from an array for `from` to an array for `to`.
+  /// Copies the tuples of this box from an array that covers `from` to an array that covers `to`.
   void copy(vtkAbstractArray& from_array, const TupleBox& from, vtkAbstractArray& to_array, const TupleBox& to) const {
     for (vtkIdType k = 0; k < count_[2]; ++k)
       for (vtkIdType j = 0; j < count_[1]; ++j)
@@ -172,7 +172,7 @@ std::string words_of(vtkAbstractArray& array) {
   return fmt::format("{} x {}", array.GetDataTypeAsString(), array.GetNumberOfComponents());
 }
 
-/// Allocates arrays like the first piece's for the whole grid.
+/// Allocates arrays for the whole grid, with the types of the first piece's arrays.
 void make_arrays(vtkDataSetAttributes& first, vtkIdType tuples, vtkDataSetAttributes& whole) {
   for (int n = 0; n < first.GetNumberOfArrays(); ++n) {
     vtkAbstractArray& like = *first.GetAbstractArray(n);
@@ -188,7 +188,7 @@ void make_arrays(vtkDataSetAttributes& first, vtkIdType tuples, vtkDataSetAttrib
       whole.SetActiveAttribute(active->GetName(), kind);
 }
 
-/// Also checks that all coordinates are finite. VTK replaces missing ones by zeros.
+/// Whether coordinates are finite and strictly monotonic. VTK replaces missing ones by zeros.
 bool rises_or_falls(vtkDataArray& coordinates) {
   bool rises = true, falls = true;
   for (vtkIdType i = 0; i < coordinates.GetNumberOfTuples(); ++i) {
@@ -199,11 +199,11 @@ bool rises_or_falls(vtkDataArray& coordinates) {
   return rises || falls;
 }
 
-/// The pieces' samples and coordinates, one after the other.
+/// Collects the samples and coordinates of the pieces, one piece after the other.
 class Assembly {
  public:
   Assembly(const std::filesystem::path& file, const WholeGrid& whole, GridKind kind) : file_(file), whole_(whole) {
-    Extent extent = whole_.extent;  // VTK's setters take non-const arrays
+    Extent extent = whole_.extent;  // a copy, because VTK's setters take non-const arrays
     if (kind == GridKind::image) {
       vtkNew<vtkImageData> image;
       image->SetExtent(extent.data());
@@ -246,7 +246,7 @@ class Assembly {
   }
 
   [[nodiscard]] vtkSmartPointer<vtkDataSet> finished() {
-    // Points and cells that a piece marks as duplicates occur once here, so they are not duplicates.
+    // Points and cells that a piece marks as duplicates occur only once in the assembled grid, so the mark is removed.
     for (vtkUnsignedCharArray* ghosts : {grid_->GetPointGhostArray(), grid_->GetCellGhostArray()})
       for (vtkIdType n = 0; ghosts != nullptr && n < ghosts->GetNumberOfTuples(); ++n)
         ghosts->SetValue(n, static_cast<unsigned char>(ghosts->GetValue(n) & ~1));
@@ -259,7 +259,8 @@ class Assembly {
   }
 
  private:
-  /// Throws unless the array has the same type and number of components as the first piece's, and all its tuples.
+  /// Throws unless the array has the type and number of components of the first piece's array, and all tuples of the
+  /// piece.
   void require_equal(vtkAbstractArray* own, vtkAbstractArray& first, const std::string& name, const TupleBox& in_piece,
                      const Piece& piece) const {
     const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
@@ -317,7 +318,7 @@ class Assembly {
           continue;
         }
         const double before = coordinates_[a]->GetComponent(at, 0);
-        // Each was rounded once or twice from the same grid.
+        // Each coordinate was rounded once or twice from that of the same grid.
         const double most = 4 * std::max(rounding_of(*own[a]), rounding_of(*coordinates_[a])) * std::abs(before);
         if (!(std::abs(x - before) <= most))
           throw scene::bad_input(
@@ -333,7 +334,7 @@ class Assembly {
   bool is_first_ = true;
   vtkSmartPointer<vtkDataSet> grid_;
   std::array<vtkSmartPointer<vtkDataArray>, 3> coordinates_;
-  std::array<std::vector<bool>, 3> known_;  ///< coordinates set by a piece
+  std::array<std::vector<bool>, 3> known_;  ///< which coordinates a piece has set
 };
 
 }  // namespace

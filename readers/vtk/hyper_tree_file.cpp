@@ -30,7 +30,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Larger than in any real file, and small enough that sums of a few do not overflow.
+/// Larger than any number in real files, but small enough that sums of a few of them do not overflow.
 constexpr std::int64_t most_numbers = std::int64_t{1} << 40;
 
 class TreeFileReader final : public vtkXMLHyperTreeGridReader {
@@ -41,7 +41,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return made;
   }
 
-  /// Called by Update(). Exceptions must not pass through VTK's pipeline, so they are stored until it ends.
+  /// Called by Update(). Exceptions must not pass through VTK's pipeline, so they are stored until the pipeline ends.
   void ReadXMLData() override {
     try {
       read();
@@ -55,7 +55,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
   std::exception_ptr fault;
   bool was_read = false, has_interfaces = false;
   StoredForest forest;
-  vtkNew<vtkCellData> values;  ///< of all cells of all trees
+  vtkNew<vtkCellData> values;  ///< values of all cells of all trees
   std::array<vtkSmartPointer<vtkDataArray>, 3> coordinates;
 
  private:
@@ -67,7 +67,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return in.FindNestedElementWithNameAndAttribute("DataArray", "Name", name);
   }
 
-  /// The number of tuples that an array states; 0 if it states none.
+  /// Returns the number of tuples that an array states; 0 if it states none.
   [[nodiscard]] std::int64_t promised(vtkXMLDataElement& array) const {
     vtkIdType tuples = 0;
     if (array.GetScalarAttribute("NumberOfTuples", tuples) == 0) return 0;
@@ -86,7 +86,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     const auto array = vtkSmartPointer<vtkDataArray>(vtkDataArray::SafeDownCast(made));
     if (array == nullptr) throw damaged(fmt::format("array {} has no numbers", name_of(element)));
     const std::int64_t count = tuples * array->GetNumberOfComponents();
-    // Deflate packs 1032 bytes of eight bits to one.
+    // Deflate packs at best 1032 bytes of eight bits into one byte.
     if (static_cast<double>(count) > 9000.0 * static_cast<double>(file_size))
       throw damaged(
           fmt::format("array {} has {} numbers, more than a file of its size holds", name_of(element), count));
@@ -104,7 +104,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return numbers_of(*element, promised(*element));
   }
 
-  /// Appends an array of bits, which may be missing, and returns their number.
+  /// Appends an array of bits, which may be missing, and returns the number of its bits.
   std::size_t add_bits(vtkXMLDataElement& in, const char* name, std::vector<bool>& bits) {
     vtkXMLDataElement* const element = array_named(in, name);
     return element != nullptr ? add_bits(*element, promised(*element), bits) : 0;
@@ -160,10 +160,10 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     }
   }
 
-  /// Version 2: arrays of all trees, one tree after the other. The last level of a tree has no divisions.
+  /// Reads version 2: arrays of all trees, one tree after the other. The last level of a tree has no divisions.
   void read_trees_together(vtkXMLDataElement& grid, vtkXMLDataElement& trees) {
     vtkXMLDataElement* const ids = array_named(trees, "TreeIds");
-    if (ids == nullptr || promised(*ids) == 0) return;  // as VTK writes a grid without trees
+    if (ids == nullptr || promised(*ids) == 0) return;  // as in VTK's output for a grid without trees
     const vtkSmartPointer<vtkDataArray> roots = numbers_of(*ids, promised(*ids)),
                                         depths = numbers_named(trees, "DepthPerTree"),
                                         counts = numbers_named(trees, "NumberOfVerticesPerDepth");
@@ -185,19 +185,19 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       tree.bits = tree.cells - last;
       cells += tree.cells, bit += tree.bits;
       if (mask != nullptr) tree.masks = tree.cells;
-      // So that the sums do not overflow, and no arrays are allocated that no division explains.
+      // Checked so that the sums do not overflow, and no arrays are allocated that the divisions do not explain.
       if (bit > bits || cells > 27 * bits + static_cast<std::size_t>(t) + 1)
         throw damaged(fmt::format("tree {} has {} cells, for which it has too few divisions", t, tree.cells));
       forest.trees.push_back(tree);
     }
-    // VTK also writes how many it had in memory, which may be more.
+    // VTK also writes the number of bits that it had in memory, which may be larger, so that number is not used.
     if (mask != nullptr) add_bits(*mask, static_cast<std::int64_t>(cells), forest.masked);
     if (vtkXMLDataElement* const data = grid.FindNestedElementWithName("CellData"))
       for (int k = 0; k < data->GetNumberOfNestedElements(); ++k)
         values->AddArray(numbers_of(*data->GetNestedElement(k), static_cast<std::int64_t>(cells)));
   }
 
-  /// Versions 0 and 1: each tree has its own arrays.
+  /// Reads versions 0 and 1, where each tree has its own arrays.
   void read_trees_apart(vtkXMLDataElement& trees) {
     forest.values_by_descent = GetFileMajorVersion() == 0;
     std::size_t cells = 0;
@@ -215,7 +215,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       cells += tree.cells;
       forest.trees.push_back(tree);
       vtkXMLDataElement* data = element.FindNestedElementWithName("CellData");
-      if (data == nullptr) data = element.FindNestedElementWithName("PointData");  // its original name
+      if (data == nullptr) data = element.FindNestedElementWithName("PointData");  // original name of the element
       if (data == nullptr) continue;
       for (int k = 0; k < data->GetNumberOfNestedElements(); ++k) {
         if (fields.size() <= static_cast<std::size_t>(k)) fields.emplace_back();
@@ -225,7 +225,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     for (auto& parts : fields) join(parts, cells);
   }
 
-  /// Concatenates the parts of a field over all trees.
+  /// Concatenates the arrays of a field in all trees.
   void join(std::vector<vtkSmartPointer<vtkDataArray>>& parts, std::size_t cells) {
     if (parts.size() != forest.trees.size())
       throw damaged(fmt::format("{} of its {} trees have a field", parts.size(), forest.trees.size()));
@@ -247,14 +247,14 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     values->AddArray(joined);
   }
 
-  /// A number that must be an integer; -1 if it is not.
+  /// Returns a number that must be an integer; -1 if it is not.
   static std::int64_t whole(vtkDataArray& array, vtkIdType n) {
     const double number = array.GetComponent(n, 0);
     return number >= 0 && number <= static_cast<double>(most_numbers) ? static_cast<std::int64_t>(number) : -1;
   }
 };
 
-/// The fields of only the leaves.
+/// Returns the fields of the leaves only.
 vtkSmartPointer<vtkCellData> of_leaves(vtkCellData& all, const std::vector<std::int64_t>& leaves) {
   auto chosen = vtkSmartPointer<vtkCellData>::New();
   const vtkNew<vtkIdList> ids;

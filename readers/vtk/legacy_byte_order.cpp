@@ -22,7 +22,7 @@
 namespace tessera::readers {
 namespace {
 
-/// The first few numbers.
+/// Whether the first few numbers are likely in a byte order.
 template <class T, class IsLikely>
 bool are_likely(std::string_view bytes, bool is_swapped, const IsLikely& is_likely) {
   constexpr std::size_t most = 3000;
@@ -31,7 +31,7 @@ bool are_likely(std::string_view bytes, bool is_swapped, const IsLikely& is_like
   return true;
 }
 
-/// Whether they are likely only in the byte order that the format does not use.
+/// Whether the numbers are likely only in the byte order that the format does not use.
 template <class T, class IsLikely>
 bool are_little_endian(std::string_view bytes, const IsLikely& is_likely) {
   constexpr bool is_little = std::endian::native == std::endian::little;
@@ -39,7 +39,8 @@ bool are_little_endian(std::string_view bytes, const IsLikely& is_likely) {
          are_likely<T>(bytes, !is_little, is_likely);
 }
 
-/// Words of the line that begins with `key`; empty if there is none. `rest` is set to the text after the line.
+/// Returns the words of the line that begins with `key`; empty if there is none. `rest` is set to the text after the
+/// line.
 std::vector<std::string> line_of(std::string_view text, std::string_view key, std::string_view& rest) {
   const std::size_t at = text.find(fmt::format("\n{} ", key));
   if (at == std::string_view::npos) return {};
@@ -68,8 +69,8 @@ bool has_little_floats(std::string_view bytes, const std::string& type, std::siz
   return type == "double" && are_little_endian<double>(bytes.substr(0, 8 * count), is_usual);
 }
 
-/// Whether a field's first numbers of `size` bytes are mostly different: 1e-35 everywhere is usual only in the wrong
-/// order.
+/// Whether the first numbers of a field, of `size` bytes each, are mostly different. A constant like 1e-35 usually
+/// means that the byte order is wrong.
 bool are_various(std::string_view bytes, std::size_t size) {
   const std::size_t count = std::min<std::size_t>(64, bytes.size() / size);
   std::set<std::string_view> different;

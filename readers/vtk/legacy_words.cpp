@@ -18,7 +18,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Arguments of a keyword: n a number, t a number type, d a kind of data set, w any word.
+/// The arguments of each keyword: n is a number, t a number type, d a kind of data set, w any word.
 constexpr std::array keywords = {std::pair("dataset", "d"),        std::pair("points", "nt"),
                                  std::pair("cells", "nn"),         std::pair("cell_types", "n"),
                                  std::pair("offsets", "t"),        std::pair("connectivity", "t"),
@@ -58,7 +58,8 @@ std::string odd_word(std::string_view word, const char* expected) {
   return fmt::format("{} is where {} is expected", scene::quote(std::string(word)), expected);
 }
 
-/// The fault in a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type).
+/// Returns the fault in a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type); empty if
+/// there is none.
 std::string odd_word_in(const std::vector<std::string_view>& words) {
   if (words.size() == 4 && is_any_number(words[1]) && is_any_number(words[2]) && is_in(number_types, words[3]))
     return "";
@@ -96,10 +97,10 @@ std::string odd_legacy_word(const std::filesystem::path& file) {
       found = odd_word_in(words);
     else if (lower_case(words[0]) != "ascii")
       found = lower_case(words[0]) == "binary" ? "" : odd_word(words[0], "ASCII or BINARY");
-    if (end == text.size() && words.size() < 2) return "";  // a word may be truncated
+    if (end == text.size() && words.size() < 2) return "";  // the word may be truncated
     if (!found.empty()) return fmt::format("line {}: {}", number + 1, found);
     if (number == 2 && lower_case(words[0]) == "binary") return "";
-    if (words.size() == 4 && is_in(std::array{"string", "variant"}, words[3])) return "";  // any words follow
+    if (words.size() == 4 && is_in(std::array{"string", "variant"}, words[3])) return "";  // any words may follow
   }
   return "";
 }

@@ -6,9 +6,9 @@
 
 namespace tessera::readers {
 
-/// The first unexpected word of a legacy VTK file in text form, as "line 12: 'foo' is where a number is expected";
-/// empty if none is found, and for binary files. For files on which VTK's reader has failed: it reports no line, and
-/// skips some such words.
+/// Returns the first unexpected word of a legacy VTK file in text form, as "line 12: 'foo' is where a number is
+/// expected"; empty if none is found, and for binary files. Called for files on which VTK's reader has failed, because
+/// that reader does not report a line and skips some unexpected words.
 std::string odd_legacy_word(const std::filesystem::path& file);
 
 }  // namespace tessera::readers

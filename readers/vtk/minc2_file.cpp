@@ -27,7 +27,7 @@ struct Axis {
   std::array<double, 3> cosines{};
 };
 
-/// An open volume. Every failing call throws Error.
+/// An open volume. Every call that fails throws Error.
 class Minc2Volume {
  public:
   explicit Minc2Volume(const std::filesystem::path& file) : source_(file.string()) {
@@ -45,15 +45,15 @@ class Minc2Volume {
           "{}: {} cannot be read as MINC 2; the file is truncated or damaged, write it again", source_, what));
   }
 
-  /// Slowest first: time, if it has steps, z, y and x, then components, if any. Later reads use this order, whatever
-  /// the file's.
+  /// Returns the axes, the slowest first: time, if it has steps, z, y and x, then components, if there are several.
+  /// Later reads use this order, whatever the order in the file.
   [[nodiscard]] std::vector<Axis> ordered_axes() const {
     int count = 0;
     require(miget_volume_dimension_count(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, &count), "its dimensions");
     if (count < 3 || count > most_axes)
       throw scene::bad_input(
           fmt::format("{}: it has {} dimensions; give a volume of three, besides time and components", source_, count));
-    // The library dereferences a null pointer for a name that the file does not have.
+    // Checked here, because the library dereferences a null pointer for a name that the file does not have.
     const std::vector<std::string> names = names_in_file(count);
     std::vector<std::string> wanted;
     for (const char* name : {"time", "zspace", "yspace", "xspace", "vector_dimension"})
@@ -68,7 +68,7 @@ class Minc2Volume {
                       "volume in space",
                       source_, fmt::join(names, ", ")));
     std::array<midimhandle_t, most_axes> dimensions{};
-    // Returns their number, or 0 like other successful calls.
+    // The function returns the number of dimensions, or 0 like other successful calls.
     if (miget_volume_dimensions(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, MI_DIMORDER_APPARENT, count,
                                 dimensions.data()) < 0)
       require(MI_ERROR, "its dimensions");
@@ -83,7 +83,7 @@ class Minc2Volume {
     return type;
   }
 
-  /// Real values of a part; the caller provides the memory.
+  /// Reads real values of a part into memory of the caller.
   void read(mitype_t as, const std::vector<misize_t>& first, const std::vector<misize_t>& counts, void* out) const {
     require(miget_real_value_hyperslab(volume_, as, first.data(), counts.data(), out), "its samples");
   }
@@ -167,7 +167,7 @@ io::ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& 
   const std::size_t z = has_time ? 1 : 0;
   for (std::size_t k = z; k < z + 3; ++k) {
     const Axis& axis = axes[k];
-    const std::size_t along = z + 2 - k;  // x is the last of them
+    const std::size_t along = z + 2 - k;  // x is the last of the three axes
     first.push_back(0), counts.push_back(axis.size);
     part.extent[2 * along + 1] = static_cast<std::int64_t>(axis.size) - 1;
     part.spacing[along] = axis.step;

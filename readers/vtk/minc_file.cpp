@@ -28,7 +28,7 @@
 namespace tessera::readers {
 namespace {
 
-/// VTK's reader reads zeros beyond the file's end.
+/// Throws if a file is truncated. VTK's reader reads zeros beyond the end of the file.
 void require_whole(const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR)
@@ -40,7 +40,7 @@ void require_whole(const std::filesystem::path& file) {
         fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_again));
 }
 
-/// Times of a file's steps: from the variable `time` if present, else from its start and step.
+/// Returns the times of a file's steps: from the variable `time` if it exists, otherwise from its start and step.
 std::vector<double> minc_times(const std::filesystem::path& file, std::size_t count) {
   int id = 0, time = 0, dimensions = 0;
   if (count < 2 || nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return {};
@@ -62,7 +62,7 @@ std::vector<double> minc_times(const std::filesystem::path& file, std::size_t co
   return times;
 }
 
-/// VTK's reader ignores attributes that are not doubles, and the sign of bytes.
+/// Corrects VTK's reader, which ignores attributes that are not doubles, and the sign of bytes.
 class MincReader : public vtkMINCImageReader {
  public:
   static MincReader* New() { VTK_STANDARD_NEW_BODY(MincReader); }
@@ -96,9 +96,9 @@ class MincReader : public vtkMINCImageReader {
     ImageAttributes->FindValidRange(ValidRange);
   }
 
-  /// Real values range from image-min to image-max as samples range over the valid range.
+  /// Real values vary from image-min to image-max while samples vary over the valid range.
   void find_valid_range(int id, int image) {
-    if (MINCImageType == NC_FLOAT || MINCImageType == NC_DOUBLE) {  // these are real values
+    if (MINCImageType == NC_FLOAT || MINCImageType == NC_DOUBLE) {  // floating-point samples are real values
       for (double* range : {ValidRange, ImageRange}) range[0] = 0, range[1] = 1;
       return;
     }
@@ -151,7 +151,7 @@ io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& f
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   contents.parts = parts_of(holdings, *reader->GetOutput(), source);
   io::ForeignPart& part = contents.parts.front();
-  // The reader's origin is along the axes; it does not apply their directions.
+  // The reader's origin is along the axes, and the reader does not apply the directions of the axes.
   const vtkMatrix4x4& cosines = *reader->GetDirectionCosines();
   const std::array<double, 3> along = part.origin;
   for (std::size_t row = 0; row < 3; ++row) {

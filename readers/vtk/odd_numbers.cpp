@@ -25,7 +25,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Placeholders: floats, so that arrays of floats represent them exactly.
+/// A word and its placeholder, a float, so that arrays of floats represent it exactly.
 struct Substitute {
   double number, meant;
 };
@@ -38,7 +38,7 @@ bool is_number(std::string_view word) {
          ((word.front() == '-' || word.front() == '+') && word.size() > 1);
 }
 
-/// The placeholder for a word; null if it needs none.
+/// Returns the placeholder for a word; null if the word does not need one.
 const Substitute* substitute_of(std::string_view word) {
   std::string lower = lower_case(word.substr(0, 12));
   const bool is_negative = lower.front() == '-';
@@ -50,7 +50,7 @@ const Substitute* substitute_of(std::string_view word) {
   return nullptr;
 }
 
-/// The words of a line with placeholders; empty if it has none, or anything but numbers.
+/// Returns the words of a line with placeholders; empty if no word needs one, or if some words are not numbers.
 std::string replaced(std::string_view line) {
   std::string result;
   bool any = false;

@@ -10,20 +10,21 @@ class vtkDataObject;
 
 namespace tessera::readers {
 
-/// A text file of numbers some of which are NaN or infinite. C++ streams, with which some of VTK's readers read, do not
-/// parse these words: placeholders that do not occur in the file replace them until the numbers are read.
+/// A text file of numbers, some of which are NaN or infinite. Some of VTK's readers read numbers with C++ streams,
+/// which do not parse these words. Placeholders that do not occur in the file therefore replace the words until the
+/// numbers have been read.
 class OddNumbers {
  public:
-  /// Searches lines that consist of numbers. Finds nothing in a file that is not text.
+  /// Searches lines that consist of numbers. Does not find anything in a file that is not text.
   explicit OddNumbers(const std::filesystem::path& file);
 
   [[nodiscard]] bool any() const { return !text_.empty(); }
-  /// The file with placeholders; empty if there are none.
+  /// The text of the file with placeholders; empty if the file has no NaN or infinite numbers.
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// The name of a file in memory with this text, valid during the lifetime of this object; without such numbers the
-  /// file itself.
+  /// Returns the name of a file in memory with this text, which is valid during the lifetime of this object. If the
+  /// file has no NaN or infinite numbers, returns the name of the file itself.
   [[nodiscard]] std::string file_name();
-  /// Replaces the placeholders in the data that was read.
+  /// Replaces the placeholders in the data that were read by the original numbers.
   void restore(vtkDataObject* data) const;
 
  private:

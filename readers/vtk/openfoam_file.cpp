@@ -28,15 +28,15 @@
 namespace tessera::readers {
 namespace {
 
-/// Reads one processor's part at a time, while VTK's own reader appends all of them.
+/// Reads the part of one processor at a time, while VTK's own reader appends all parts.
 class ProcessorReader : public vtkPOpenFOAMReader {
  public:
   static ProcessorReader* New();
 
-  /// Number of parts, after UpdateInformation().
+  /// Number of parts; valid after UpdateInformation().
   [[nodiscard]] int processors() const { return Readers->GetNumberOfItems(); }
 
-  /// Selects the part of the next update; all at first.
+  /// Selects the part that the next update reads; initially all parts are selected.
   void choose(int processor) {
     chosen_ = processor;
     Modified();
@@ -60,7 +60,7 @@ class ProcessorReader : public vtkPOpenFOAMReader {
 };
 vtkStandardNewMacro(ProcessorReader);
 
-/// The meshes of a case, or of one of its processors: of all regions, if there are several.
+/// Returns the meshes of a case, or of one of its processors; those of all regions, if there are several.
 std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
   std::error_code unknown;
   std::vector<std::filesystem::path> meshes;
@@ -74,7 +74,7 @@ std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder
   return meshes;
 }
 
-/// Whether a case's lists have 64-bit integers, according to its files ("arch").
+/// Whether the lists of a case have 64-bit integers, as its files state ("arch").
 bool has_wide_labels(const std::filesystem::path& folder) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
@@ -93,7 +93,8 @@ bool has_wide_labels(const std::filesystem::path& folder) {
   return false;
 }
 
-/// Text files written by OpenFOAM itself have a list for each face.
+/// Throws for a text file with a compact list of faces. Text files written by OpenFOAM itself have a list for each
+/// face.
 void refuse_compact_text(const std::filesystem::path& faces, const std::string& source) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(faces, unknown)) return;
@@ -112,7 +113,8 @@ void refuse_compact_text(const std::filesystem::path& faces, const std::string& 
                     source, faces.lexically_normal().string()));
 }
 
-/// Throws if a file of a mesh is missing, which VTK's reader treats as a missing mesh, or as damage.
+/// Throws if a file of a mesh is missing. VTK's reader would act as if there were no mesh, or as if the file were
+/// damaged.
 void require_mesh_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
@@ -126,8 +128,8 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
     }
 }
 
-/// Throws if a file that VTK's reader may open is a pipe, which would block it. Files in the directory of the case
-/// itself are not read.
+/// Throws if a file that VTK's reader may open is a pipe, which would block the reader. Files directly in the directory
+/// of the case are not read.
 void require_regular_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   std::filesystem::recursive_directory_iterator entry(folder, unknown);
@@ -145,7 +147,7 @@ bool is_case(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / "processors", unknown);
 }
 
-/// The directory of the case to which a file or directory belongs: the one that contains it, or one above.
+/// Returns the directory of the case to which a file or directory belongs: `named` itself, its directory, or one above.
 std::filesystem::path case_of(const std::filesystem::path& named) {
   std::error_code unknown;
   if (std::filesystem::is_directory(named, unknown)) return named;
@@ -158,7 +160,7 @@ std::filesystem::path case_of(const std::filesystem::path& named) {
   return own;
 }
 
-/// Number of processor directories of a case, as VTK counts them.
+/// Returns the number of processor directories of a case, as VTK counts them.
 int processor_folders(const std::filesystem::path& folder) {
   std::error_code unknown;
   int count = 0;
@@ -173,8 +175,8 @@ int processor_folders(const std::filesystem::path& folder) {
   return count;
 }
 
-/// Names of the patches of all regions, after UpdateInformation(); without those between processors, and without groups
-/// of patches, which are not separate surfaces.
+/// Returns the names of the patches of all regions. Omits patches between processors, and groups of patches, which are
+/// not separate surfaces. Must be called after UpdateInformation().
 std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   std::vector<std::string> patches;
   for (int k = 0; k < reader.GetNumberOfPatchArrays(); ++k) {
@@ -187,8 +189,8 @@ std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   return cells::distinct_names(std::move(patches));
 }
 
-/// Reads the request's share of the processors one by one, so that the whole gives the same result as its shares: their
-/// blocks in order.
+/// Reads the request's share of the processors one by one, so that reading the whole case gives the blocks of all its
+/// shares, in order.
 void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
                      const std::string& source, const nlohmann::json& request, io::ForeignContents& contents) {
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
@@ -212,14 +214,14 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
                                   const nlohmann::json& request) {
   const std::filesystem::path folder = case_of(named);
   const std::string source = named.string();
-  // The reader derives the case from a name in its directory, and does not require that this file exists.
+  // The reader determines the case from a name in its directory, and does not require that a file of this name exists.
   const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
   allow_for_folder(folder);
   const vtkNew<ProcessorReader> reader;
-  const vtkNew<vtkDummyController> alone;  // it treats the parts of a case as those of processes and asks for its rank
+  const vtkNew<vtkDummyController> alone;  // the reader asks for a rank, to which a part of the case belongs
   reader->SetController(alone);
   reader->SetFileName(file.c_str());
-  // processor0, processor1, ...: written by parallel runs, and not reconstructed since.
+  // Directories processor0, processor1, ... that a parallel run wrote and that were not reconstructed since.
   std::error_code unknown;
   const bool is_whole = !meshes_of(folder).empty();
   const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
@@ -234,7 +236,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOff();  // our tets are conforming, with one value per cell (cells/polyhedron_split.hpp)
+  reader->DecomposePolyhedraOff();  // ours is conforming, one value per cell (cells/polyhedron_split.hpp)
   io::ForeignContents contents;
   contents.format = "OpenFOAM case";
   if (!is_decomposed && request.value("part", 0) > 0) return contents;

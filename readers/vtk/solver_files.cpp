@@ -56,8 +56,9 @@
 namespace tessera::readers {
 namespace {
 
-/// Reads with a prepared reader; `choose` enables its file's arrays once they are known. If the reader supports shares
-/// of a file, reads the request's `part` of `parts`, which may be empty. `correct` corrects errors of the reader.
+/// Reads with a prepared reader. `choose` enables the file's arrays once they are known. If the reader supports shares
+/// of a file, reads the request's `part` of `parts`, which may be empty. `correct` corrects errors of the reader in the
+/// result.
 template <class Reader, class Choose>
 io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
                             const nlohmann::json& request, const char* format, const Choose& choose,
@@ -80,7 +81,7 @@ io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::files
   return contents;
 }
 
-/// The first error of a Fluent reader, except for missing values: a case without them is still a mesh.
+/// The first error of a Fluent reader. Errors about missing values are ignored: a case without values is still a mesh.
 class FluentErrors : public vtkCommand {
  public:
   static FluentErrors* New() { return new FluentErrors; }
@@ -94,15 +95,15 @@ class FluentErrors : public vtkCommand {
   std::string first;
 };
 
-/// Next to the case, with the name that VTK searches for.
+/// Returns the file of values next to the case, with the name for which VTK searches.
 std::filesystem::path fluent_values_of(const std::filesystem::path& file) {
   std::string name = file.string();
   name.replace(name.size() - std::min<std::size_t>(name.size(), 3), std::string::npos, "dat");
   return name;
 }
 
-/// The values of a .dat file with a blank added at the end of those in text; no value if all have one. VTK's reader
-/// treats the last character before the parenthesis as a blank.
+/// Returns the text of a .dat file with a blank added at the end of each list of values in text form; no value if all
+/// lists end with a blank. Needed because VTK's reader treats the last character before the parenthesis as a blank.
 std::string spaced_fluent_values(std::string_view text) {
   constexpr std::string_view binary_end = "End of Binary Section";
   std::string spaced;
@@ -110,7 +111,7 @@ std::string spaced_fluent_values(std::string_view text) {
   for (std::size_t at = text.find('('); at != std::string_view::npos; at = text.find('(', at)) {
     const std::size_t blank = std::min(text.find_first_of(" (", at + 1), text.size());
     const std::string_view index = text.substr(at + 1, blank - at - 1);
-    if (index.size() > 3) {  // as the reader identifies binary sections
+    if (index.size() > 3) {  // the condition by which the reader identifies binary sections
       const std::size_t end = text.find(binary_end, at);
       if (end == std::string_view::npos) break;
       at = end + binary_end.size();
@@ -136,7 +137,7 @@ class FluentReader : public vtkFLUENTReader {
 
  protected:
   bool OpenDataFile(const char* file) override {
-    std::error_code unknown;  // a pipe of that name would block
+    std::error_code unknown;  // a pipe of that name would block the reader
     if (!std::filesystem::is_regular_file(fluent_values_of(file), unknown)) return false;
     if (!vtkFLUENTReader::OpenDataFile(file)) return false;
     std::string spaced = spaced_fluent_values(io::WholeFile(fluent_values_of(file)).text());
@@ -147,10 +148,10 @@ class FluentReader : public vtkFLUENTReader {
   }
 };
 
-/// The sections of a Fluent file before its first binary one.
+/// The sections of a Fluent file that precede its first binary section.
 struct FluentSections {
   int dimensions = 3;
-  std::string untyped;  ///< zone of cells whose section ends before their type, as a hexadecimal number
+  std::string untyped;  ///< a zone of cells whose section ends before the cells' type; a hexadecimal number
 };
 
 FluentSections fluent_sections(const std::filesystem::path& file) {
@@ -178,7 +179,8 @@ FluentSections fluent_sections(const std::filesystem::path& file) {
   return found;
 }
 
-/// VTK's reader leaves missing values uninitialized.
+/// Throws for a two-dimensional mesh, and for a section of cells that does not state their type, which VTK's reader
+/// would leave uninitialized.
 void require_solid_cells(const std::filesystem::path& file) {
   const FluentSections sections = fluent_sections(file);
   if (sections.dimensions == 2)
@@ -191,9 +193,10 @@ void require_solid_cells(const std::filesystem::path& file) {
         file.string(), sections.untyped));
 }
 
-/// GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids: (0, 0), (1, 0), (0, 1), (1, 1).
-/// VTK's reader treats them as going around, which makes self-intersecting cells. Some programs do write them around,
-/// so the order with fewer such cells is used.
+/// Corrects the order of corners. GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids:
+/// (0, 0), (1, 0), (0, 1), (1, 1). VTK's reader treats them as listed around the quadrangle, which makes
+/// self-intersecting cells. Some programs do list them around it, so the order with fewer self-intersecting cells is
+/// used.
 void order_gambit_corners(vtkDataObject& data) {
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(&data);
   if (grid == nullptr || grid->GetPoints() == nullptr) return;
@@ -220,7 +223,8 @@ void order_gambit_corners(vtkDataObject& data) {
   }
 }
 
-/// The case files listed by a master file of several servers, each with a part of the mesh; or the file itself.
+/// Returns the case files that a master file for several servers lists, each with a part of the mesh; or the file
+/// itself.
 std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& file) {
   std::ifstream text(file);
   std::vector<std::filesystem::path> cases;
@@ -246,7 +250,7 @@ bool asks_for(std::string_view field, const std::string& name) {
   return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
 }
 
-/// Leaves out variables without a file at the requested step; without the geometry there is nothing to read.
+/// Disables variables that have no file at the requested step. Throws if the geometry is missing.
 void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& described, double time,
                        const std::string& source, const nlohmann::json& request, std::vector<std::string>& notes) {
   for (const EnsightCase::Missing& gone : described.missing(time)) {
@@ -270,7 +274,8 @@ struct CutFile {
   std::string place;
 };
 
-/// The variables whose files end too early. VTK's reader completes them with zeros (text), or fails without a name.
+/// Returns the variables whose files end too early. VTK's reader adds zeros in text files, and otherwise fails without
+/// naming the file.
 std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::vector<EnsightCase::Values>& variables,
                                vtkDataObject& data, std::vector<std::string>& notes) {
   std::vector<CutFile> found;
@@ -300,7 +305,7 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
                       file.string(), each.values.variable, each.values.file_name, each.place));
 }
 
-/// The requested step of a case with file sets.
+/// Selects the requested step of a case with file sets.
 scene::TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request,
                                       const std::string& source) {
   std::optional<std::size_t> requested;
@@ -358,7 +363,7 @@ io::ForeignContents read_case(Holdings& holdings, const std::filesystem::path& f
   io::ForeignContents contents;
   try {
     contents = read(true);
-  } catch (const scene::Error&) {  // a binary file may end too early: the parts show which
+  } catch (const scene::Error&) {  // a binary file that ends too early may cause this; the parts show which file it is
     try {
       read(false);
     } catch (const scene::Error&) {
@@ -403,7 +408,7 @@ io::ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path
 
 io::ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  if (io::read_beginning(file, 8).starts_with("\x89HDF"))  // links to files of other directories are common in these
+  if (io::read_beginning(file, 8).starts_with("\x89HDF"))  // often links to files of other directories
     require_sound_references(file, ReferencesMay::point_anywhere);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
@@ -437,7 +442,7 @@ io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path&
   io::ForeignContents contents;
   try {
     contents = read_by(holdings, *reader, file, request, "Fluent", [&] { reader->EnableAllCellArrays(); });
-  } catch (const scene::Error&) {  // usually by running out of memory, because it does not check the end of a file
+  } catch (const scene::Error&) {  // usually memory runs out, because the reader does not check for the end of a file
     throw scene::bad_input(fmt::format("{}: VTK's reader cannot read it; export CGNS or EnSight", file.string()));
   }
   if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_again);

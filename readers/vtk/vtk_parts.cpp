@@ -35,7 +35,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Bits, which VTK packs eight to a byte, become bytes.
+/// Returns our type. VTK packs eight bits into a byte; here each bit becomes a byte.
 NumberType type_of(int vtk_type) {
   switch (vtk_type) {
     case VTK_CHAR:
@@ -66,7 +66,7 @@ NumberType type_of(int vtk_type) {
   }
 }
 
-/// The same numbers in contiguous tuples.
+/// Returns the same numbers in contiguous tuples.
 vtkSmartPointer<vtkDataArray> plain(vtkDataArray& array) {
   if (array.HasStandardMemoryLayout() && array.GetDataType() != VTK_BIT) return &array;
   const int type = array.GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array.GetDataType();
@@ -118,17 +118,17 @@ void set_extent(Grid& grid, io::ForeignPart& part) {
   std::copy(extent.begin(), extent.end(), part.extent.begin());
 }
 
-/// Indices as uint32; those that do not fit become its largest value.
+/// Converts indices to uint32; those that do not fit become the largest uint32.
 template <class Index>
 void narrow_indices(const Index* indices, std::size_t count, std::byte* out) {
   for (std::size_t k = 0; k < count; ++k) {
-    const auto index = static_cast<std::uint64_t>(indices[k]);  // a negative one becomes huge
+    const auto index = static_cast<std::uint64_t>(indices[k]);  // a negative index becomes a huge number
     const auto narrow = static_cast<std::uint32_t>(std::min<std::uint64_t>(index, UINT32_MAX));
     std::memcpy(out + k * sizeof narrow, &narrow, sizeof narrow);
   }
 }
 
-/// Point indices of cells, with half the bytes of VTK's.
+/// Adds the point indices of cells, which take half the bytes of VTK's.
 io::ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int components) {
   io::ForeignArray held;
   held.type = NumberType::uint32;
@@ -147,7 +147,7 @@ io::ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int compo
   });
 }
 
-/// Whether all cells are tets, as in most large meshes.
+/// Whether all cells are tets, which is the case in most large meshes.
 bool are_tets(vtkUnsignedCharArray& types, vtkCellArray& cells) {
   const vtkIdType count = types.GetNumberOfValues();
   if (count == 0 || cells.GetNumberOfCells() != count || cells.GetNumberOfConnectivityIds() != 4 * count) return false;
@@ -220,7 +220,7 @@ io::ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string&
 
 using Names = std::map<const vtkDataObject*, std::string>;
 
-/// The names of the data sets of a tree, each a path of the enclosing ones.
+/// Adds the names of the data sets of a tree. Each name is a path that includes the names of enclosing groups.
 void add_names(vtkDataObject* data, const std::string& path, Names& names) {
   const auto add = [&](unsigned count, const auto& child, const auto& about) {
     for (unsigned k = 0; k < count; ++k) {

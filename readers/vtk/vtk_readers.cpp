@@ -53,7 +53,8 @@ class WithPieces final : public Reader {
     return made;
   }
 
-  /// Call after UpdateInformation(). VTK leaves values outside the pieces uninitialized.
+  /// Throws unless the pieces fill the whole extent, because VTK leaves values outside the pieces uninitialized. Must
+  /// be called after UpdateInformation().
   void require_whole(const std::string& source) const {
     Extent whole{};
     std::copy_n(this->WholeExtent, 6, whole.begin());
@@ -83,8 +84,8 @@ vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
-/// After each piece, VTK's reader reorders the nodes of old hexahedra, including those of all earlier pieces, which are
-/// thereby reordered twice.
+/// Corrects VTK's reader. After each piece it reorders the nodes of old hexahedra in all pieces read so far, so that
+/// those of earlier pieces are reordered twice.
 class OldCellsOnce final : public vtkXMLUnstructuredGridReader {
  public:
   static OldCellsOnce* New() {
@@ -139,8 +140,7 @@ vtkSmartPointer<vtkDataObject> read_surface(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
-/// A surface's triangle strips become polygons like the others. Every second triangle of a strip has the opposite
-/// orientation.
+/// Converts the triangle strips of a surface to polygons. Every other triangle of a strip has the opposite orientation.
 void add_strips(vtkPolyData& surface) {
   vtkCellArray* const strips = surface.GetStrips();
   if (strips == nullptr || strips->GetNumberOfCells() == 0) return;
@@ -158,7 +158,7 @@ void add_strips(vtkPolyData& surface) {
   surface.SetPolys(polygons);
 }
 
-/// Reads legacy VTK. An unexpected word ends VTK's reading, not always with an error.
+/// Reads legacy VTK. At an unexpected word, VTK's reader stops, and does not always report an error.
 vtkSmartPointer<vtkDataObject> read_legacy(const std::filesystem::path& file, std::string& warning) {
   const std::string source = file.string();
   const auto name_odd_word = [&] {
@@ -278,7 +278,7 @@ io::ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& fi
   vtkSmartPointer<vtkDataObject> data;
   with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it again", [&] {
     vtkNew<vtkSTLReader> reader;
-    reader->MergingOff();  // done by merge_coincident_points
+    reader->MergingOff();  // merge_coincident_points() merges points
     watch_progress(*reader);
     reader->SetFileName(source.c_str());
     reader->Update();

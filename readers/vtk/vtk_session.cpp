@@ -43,11 +43,12 @@ class MessageTrap : public vtkOutputWindow {
   void DisplayDebugText(const char*) override {}
 
   std::string error, warning;
-  bool failed = false;  ///< an error occurred, perhaps without a message
+  bool failed = false;  ///< an error was reported, perhaps without a message
   std::vector<std::string> passed_over;
 
  private:
-  /// VTK writes "ERROR: In /path/x.cxx, line 12\nvtkX (0x55..): message\n\n"; only the message is for users.
+  /// Keeps a message if it is the first. VTK writes "ERROR: In /path/x.cxx, line 12\nvtkX (0x55..): message\n\n"; only
+  /// the message is for users.
   bool keep(std::string& first, const char* text) {
     if (!first.empty() || text == nullptr) return false;
     for (const std::string& words : passed_over)
@@ -58,7 +59,7 @@ class MessageTrap : public vtkOutputWindow {
 };
 vtkStandardNewMacro(MessageTrap);
 
-/// Installs the trap during its lifetime.
+/// Installs the trap during the lifetime of this object.
 class Quiet {
  public:
   Quiet()

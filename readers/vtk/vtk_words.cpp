@@ -18,7 +18,7 @@ constexpr const char* no_output = "not create output";
 
 bool has(std::string_view text, std::string_view words) { return text.find(words) != std::string_view::npos; }
 
-/// Messages of readers about bytes that do not follow the format.
+/// Whether a message reports bytes that do not follow the format.
 bool proves_damage(std::string_view words) {
   constexpr std::array signs = {"EOF",
                                 "nd of file",
@@ -38,11 +38,11 @@ bool proves_damage(std::string_view words) {
                                 "invalid VARIABLE line",
                                 "entry found for patch",
                                 "but mesh only has",
-                                "cell type: is not supported"};  // a truncated word
+                                "cell type: is not supported"};  // the missing type is a truncated word
   return std::any_of(signs.begin(), signs.end(), [&](const char* sign) { return has(words, sign); });
 }
 
-/// The missing file that a message names; empty if there is none.
+/// Returns the missing file that a message names; empty if it does not name one.
 std::string missing_file_in(std::string_view words, const std::string& source) {
   if (!has(words, "open") && !has(words, "not found") && !has(words, "does not exist")) return "";
   const auto is_missing = [&](std::string name, bool is_after_colon) {
@@ -56,7 +56,7 @@ std::string missing_file_in(std::string_view words, const std::string& source) {
       return std::string();
     return path.extension() == ".gz" ? (path.parent_path() / path.stem()).string() : name;  // both names were tried
   };
-  // A name may contain blanks: tries everything after a colon, then word by word.
+  // A name may contain blanks. So everything after a colon is tried first, then each word.
   for (std::size_t at = words.find(": "); at != std::string_view::npos; at = words.find(": ", at + 1))
     if (std::string name = is_missing(std::string(words.substr(at + 2)), true); !name.empty()) return name;
   for (std::size_t at = 0; at < words.size();) {
@@ -73,7 +73,7 @@ std::string words_for_users(std::string_view reported) {
   std::string text(reported);
   if (has(text, no_output)) return no_output;
   if (const std::size_t at = text.find("): "); at != std::string::npos) text.erase(0, at + 3);
-  // "Algorithm vtkX returned failure for request: vtkInformation" and its state.
+  // Removes "Algorithm vtkX returned failure for request: vtkInformation" and the state that follows.
   for (const char* const state : {"Algorithm vtk", "vtkInformation", "Debug: O", "Modified Time:"})
     text.resize(std::min(text.size(), text.find(state)));
   for (std::size_t at = 0; (at = text.find("(0x", at)) != std::string::npos;) {
@@ -98,12 +98,12 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
         fmt::format("{}: VTK's reader fails on it and gives no reason; have it written in another format", source));
   // VTK's legacy reader reports a truncated file only as a warning.
   if (has(words, "ends before its data")) return scene::bad_input(fmt::format("{}: {}; {}", source, words, remedy));
-  // Legacy files that contain only fields.
+  // The file is a legacy file that contains only fields.
   if (words == no_output)
     return scene::bad_input(fmt::format("{}: it holds no points and cells; give the file that does", source));
   if (const std::string file = missing_file_in(words, source); !file.empty())
     return scene::bad_input(fmt::format("{}: it needs {}, and there is no such file; put it there", source, file));
-  // Some readers begin with the file's name themselves.
+  // The messages of some readers already begin with the name of the file.
   const std::string own = words.starts_with(source + ": ") ? words.substr(source.size() + 2) : words;
   for (const char* const odd : {"non-digit character n", "non-digit character i", "found nan", "found inf"})
     if (own.ends_with(odd))

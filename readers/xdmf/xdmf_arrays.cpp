@@ -43,7 +43,7 @@ cells::NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int 
 }  // namespace
 
 XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file.string()) {
-  std::error_code unknown;  // content of a gzip file has no directory
+  std::error_code unknown;  // set for the content of a gzip file, which has no directory
   folder_ = std::filesystem::weakly_canonical(file, unknown).parent_path();
   files_.push_back(std::filesystem::absolute(file));  // the current directory may change later
 }
@@ -68,7 +68,7 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
   }
 }
 
-/// Xdmf fills missing bytes of a file with zeros.
+/// Throws if a file is too short, because Xdmf replaces missing bytes by zeros.
 void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std::filesystem::path& file) const {
   const std::uint64_t size = io::require_file(file),
                       least = numbers.getSeek() +

@@ -12,16 +12,16 @@ class XdmfBinaryController;
 
 namespace tessera::readers {
 
-/// The files referenced by an XDMF file that contain the numbers of its arrays.
+/// The files to which an XDMF file refers, which contain the numbers of its arrays.
 class XdmfHeavyFiles {
  public:
   explicit XdmfHeavyFiles(const std::filesystem::path& file);
 
-  /// Records where an array's numbers are. Throws Error(bad_input) for a file that is missing, or is not in the XDMF
-  /// file's directory or below, and for numbers that must be computed.
+  /// Records where the numbers of an array are. Throws Error(bad_input) for a file that is missing, or is not in the
+  /// XDMF file's directory or below, and for numbers that must be computed.
   void add(XdmfArray& array);
 
-  /// Raises the limits of memory and time for all of them.
+  /// Raises the limits of memory and time for all of these files.
   void allow() const;
 
  private:
@@ -32,11 +32,11 @@ class XdmfHeavyFiles {
   std::vector<std::filesystem::path> files_;
 };
 
-/// The numbers as doubles; reads them if necessary.
+/// Returns the numbers of an array as doubles, after reading them if necessary.
 std::vector<double> doubles_of(XdmfArray& array);
 
-/// The numbers in their own type; reads them if necessary. The tally is of the lengths of `components`. The array is
-/// empty afterwards, unless it `is_kept`.
+/// Adds an array with its numbers in their own type, after reading them if necessary. For several `components`, the
+/// tally is that of the tuples' lengths. `array` is empty afterwards, unless it `is_kept`.
 io::ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components, bool is_kept);
 
 }  // namespace tessera::readers

@@ -19,9 +19,9 @@ namespace tessera::readers {
 namespace {
 
 struct XdmfCell {
-  unsigned xdmf;  ///< in topologies of mixed cells, "XDMF Model and Format"
+  unsigned xdmf;  ///< number in topologies of mixed cells, according to "XDMF Model and Format"
   CellType type;
-  std::uint8_t nodes;  ///< 0: stored before the nodes
+  std::uint8_t nodes;  ///< 0: the number of nodes is stored before the nodes
 };
 constexpr std::array xdmf_cells = {XdmfCell{1, CellType::poly_vertex, 0},
                                    XdmfCell{2, CellType::poly_line, 0},
@@ -55,7 +55,7 @@ const XdmfCell& cell_of(unsigned xdmf, const std::string& name, const std::strin
   return *type;
 }
 
-/// The library's table of names is accessible only to subclasses.
+/// Gives access to the library's table of names, which only subclasses can access.
 class TopologyNames : public XdmfTopologyType {
  public:
   static void add() {
@@ -70,7 +70,7 @@ class TopologyNames : public XdmfTopologyType {
   }
 };
 
-/// Reads a topology's numbers sequentially.
+/// Reads the numbers of a topology sequentially.
 class Numbers {
  public:
   Numbers(std::span<const std::int64_t> numbers, std::int64_t base, const std::string& where)
@@ -100,7 +100,7 @@ class Numbers {
   std::size_t at_ = 0;
 };
 
-/// The number of the first point, which rewritten_xdmf() records; Xdmf's library ignores it.
+/// Returns the number of the first point, which rewritten_xdmf() records because Xdmf's library ignores it.
 std::int64_t base_of(XdmfTopology& topology) {
   const auto noted = topology.getInformation(base_offset);
   return noted == nullptr ? 0 : std::strtoll(noted->getValue().c_str(), nullptr, 10);

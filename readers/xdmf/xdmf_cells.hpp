@@ -17,12 +17,12 @@ struct XdmfCells {
   std::vector<std::uint32_t> connectivity;  ///< the largest value replaces indices that do not fit
 };
 
-/// Registers the documented names of second-order cells, "Tet_10" ..., with Xdmf's library, in addition to its own,
-/// "Tetrahedron_10" ...
+/// Registers the documented names of second-order cells, "Tet_10" ..., with Xdmf's library. The library itself supports
+/// only other names, "Tetrahedron_10" ...
 void add_cell_names();
 
-/// The cells of a topology whose numbers have been read. XDMF numbers nodes like VTK, also in higher-order cells.
-/// Throws Error(bad_input) for cells without a VTK type, and numbers that end within a cell.
+/// Converts the cells of a topology whose numbers have been read. XDMF numbers nodes like VTK, even in higher-order
+/// cells. Throws Error(bad_input) for cells without a VTK type, and for numbers that end within a cell.
 XdmfCells cells_of(XdmfTopology& topology, const std::string& where);
 
 }  // namespace tessera::readers

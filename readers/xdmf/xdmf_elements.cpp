@@ -55,7 +55,7 @@ class InlineNumbers {
           fmt::format("{}: a <DataItem> of the dimensions {} holds {} numbers; it is truncated or damaged, write it "
                       "again",
                       source_, scene::quote(dimensions_), words_));
-    constexpr std::uint64_t most = 10'000'000;  // libxml2's limit, as Xdmf's library calls it
+    constexpr std::uint64_t most = 10'000'000;  // limit of libxml2 with the options of Xdmf's library
     if (bytes_ > most)
       throw scene::bad_input(fmt::format(
           "{}: a <DataItem> has {} bytes of numbers in the text, and Xdmf's library takes {} at most; write "
@@ -66,19 +66,19 @@ class InlineNumbers {
 
  private:
   const std::string& source_;
-  std::string dimensions_;  ///< empty: nothing to count
+  std::string dimensions_;  ///< empty: there is nothing to count
   std::uint64_t words_ = 0, bytes_ = 0;
   bool in_word_ = false;
 };
 
-/// The value of the first of these attributes that exists.
+/// Returns the value of the first of these attributes that exists.
 std::string word(const io::XmlElement& element, std::initializer_list<const char*> names) {
   for (const char* name : names)
     if (const std::string* const value = element.find(name)) return *value;
   return "";
 }
 
-/// Refuses items that Xdmf's library would misinterpret.
+/// Throws for items that Xdmf's library would misinterpret.
 void check_item(const io::XmlElement& element, const std::string& source) {
   if (element.name != "DataItem") return;
   if (upper_case(word(element, {"ItemType"})).starts_with("COORDINATE"))
@@ -97,7 +97,7 @@ void check_item(const io::XmlElement& element, const std::string& source) {
         source, scene::quote(bytes)));
 }
 
-/// Whether the element is valid by the format's documentation but an error for its library.
+/// Whether the element is valid according to the format's documentation, but the library cannot read it.
 bool is_to_be_rewritten(const io::XmlElement& element) {
   if (element.find("Reference") != nullptr) return true;
   if (element.name == "Attribute") {
@@ -130,11 +130,11 @@ bool is_selection(const std::string& item_type) { return upper_case(item_type) =
 
 std::optional<std::string> library_type(const std::string& number_type, const std::string& precision) {
   const std::string type = upper_case(number_type), sign = type == "UINT" ? "U" : "";
-  if (type.empty() && precision == "8") return "Float";  // otherwise interpreted as 4 bytes
+  if (type.empty() && precision == "8") return "Float";  // otherwise the library would assume 4 bytes
   if (type != "INT" && type != "UINT") return std::nullopt;
   if (precision == "1") return sign + "Char";
   if (precision == "2") return sign + "Short";
-  if (type == "UINT" && precision == "8") return "Int";  // the library lacks this type; it would read 4 of the 8 bytes
+  if (type == "UINT" && precision == "8") return "Int";  // the library lacks this type, and would read 4 of the 8 bytes
   return std::nullopt;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 using Grid = boost::shared_ptr<XdmfGrid>;
 
-/// All grids in a domain or collection, which Xdmf stores by kind.
+/// Returns all grids in a domain or collection. Xdmf stores them separately by kind.
 std::vector<Grid> children_of(XdmfDomain& domain) {
   std::vector<Grid> grids;
   for (unsigned k = 0; k < domain.getNumberUnstructuredGrids(); ++k) grids.push_back(domain.getUnstructuredGrid(k));
@@ -32,7 +32,7 @@ std::vector<Grid> children_of(XdmfDomain& domain) {
   return grids;
 }
 
-/// Time of the grid, or of the first grid in it that has one.
+/// Returns the time of a grid, or of the first grid in it that has one.
 std::optional<double> time_of(const Grid& grid) {
   if (const auto time = grid->getTime()) return time->getValue();
   if (const auto collection = boost::dynamic_pointer_cast<XdmfGridCollection>(grid))
@@ -44,7 +44,7 @@ std::optional<double> time_of(const Grid& grid) {
 /// The steps of a temporal collection, sorted by time if all have one.
 struct Steps {
   std::vector<Grid> grids;
-  std::vector<double> times;  ///< empty: not all have one
+  std::vector<double> times;  ///< empty unless all steps have a time
 };
 
 Steps steps_of(XdmfGridCollection& collection) {
@@ -65,7 +65,7 @@ bool is_in_time(const XdmfGridCollection& collection) {
   return collection.getType() == XdmfGridCollectionType::Temporal();
 }
 
-/// The common steps of all temporal collections of a domain.
+/// The steps of a domain, which combine those of all its temporal collections.
 class Timeline {
  public:
   explicit Timeline(const std::vector<Grid>& grids) {
@@ -77,12 +77,12 @@ class Timeline {
 
   [[nodiscard]] std::size_t count() const { return by_time_ ? times_.size() : longest_; }
 
-  /// Times of the steps if all have one; else empty.
+  /// Returns the times of the steps if all have one; otherwise an empty list.
   [[nodiscard]] std::vector<double> times() const {
     return all_timed_ && times_.size() == count() ? times_ : std::vector<double>();
   }
 
-  /// Null before the collection's first time.
+  /// Returns the grid of a collection at a step; null before the collection's first time.
   [[nodiscard]] Grid at(const Steps& steps, std::size_t step) const {
     if (!by_time_) return steps.grids[std::min(step, steps.grids.size() - 1)];
     const auto later = std::upper_bound(steps.times.begin(), steps.times.end(), times_[step]);
@@ -124,7 +124,8 @@ class Walk {
       for (const Grid& child : children_of(*collection)) visit(child, joined(path, child->getName()));
       return;
     }
-    // Grids at different times also have different names, so blocks are not named by them.
+    // Grids at different times have different names, so the names of grids in a temporal collection are not used for
+    // blocks.
     const Steps steps = steps_of(*collection);
     if (steps.grids.empty()) return;
     if (const Grid chosen = timeline_.at(steps, step_)) visit(chosen, path);

@@ -14,16 +14,17 @@ class XdmfGrid;
 
 namespace tessera::readers {
 
-/// A mesh at one time step: a grid that is not a collection, or several grids with the same points and cells.
+/// A mesh at one time step: a grid that is not a collection, or several grids that have the same points and cells.
 struct XdmfBlock {
-  std::vector<std::string> names;                  ///< after those of enclosing collections: "engine/valve"
-  std::vector<boost::shared_ptr<XdmfGrid>> grids;  ///< points and cells are the first grid's, fields those of all
+  std::vector<std::string> names;                  ///< with the names of enclosing collections: "engine/valve"
+  std::vector<boost::shared_ptr<XdmfGrid>> grids;  ///< the first grid has the points and cells; all grids have fields
 };
 
-/// The grids of a domain, those of one mesh merged: of spatial collections all; of temporal collections those of one
-/// step, counted from 0, or the last. Steps are sorted by time, if all have one. If temporal collections have different
-/// lengths, the steps are the union of their times, and each collection shows its latest grid at that time. `read`
-/// receives the step. Throws Error(bad_input) for a step that does not exist.
+/// Returns the grids of a domain; grids of one mesh are merged. All grids of a spatial collection are used. Of a
+/// temporal collection, those of one step are used, counted from 0, or of the last step. Steps are sorted by time, if
+/// all have one. If temporal collections have different lengths, the steps are the union of their times, and each
+/// collection has its latest grid at that time. `read` receives the step. Throws Error(bad_input) for a step that does
+/// not exist.
 std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, std::optional<std::size_t> time_step,
                                  const std::string& source, scene::TimeStepRead& read);
 

@@ -40,7 +40,7 @@ namespace {
 
 constexpr const char* finite_element_function = "FiniteElementFunction";
 
-/// Numbers of points or cells along x, y and z, from dimensions in reverse order.
+/// Returns the numbers of points or cells along x, y and z, given dimensions in the reverse order.
 std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& where) {
   const std::vector<double> numbers = doubles_of(dimensions);
   if (numbers.size() != 3)
@@ -68,16 +68,16 @@ io::ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const s
   return hold_xdmf(holdings, geometry, "", 3, is_kept);
 }
 
-/// Values shared by all blocks.
+/// Values that all blocks share.
 struct Reading {
   Holdings& holdings;
   bool headers_only;
   const std::string& source;
-  std::set<const XdmfArray*> shared;  ///< used by more than one block
+  std::set<const XdmfArray*> shared;  ///< arrays that several blocks use
   std::vector<std::string>& notes;
 };
 
-/// One block under one of its names.
+/// Reads one block under one of its names.
 class PartOf {
  public:
   PartOf(Reading& reading, const XdmfBlock& block, const std::string& name)
@@ -178,7 +178,7 @@ class PartOf {
     }
   }
 
-  /// Its values belong to degrees of freedom, not to the file's points or cells.
+  /// Returns a note about an attribute whose values belong to degrees of freedom, not to points or cells of the file.
   static std::string note_on_function(const XdmfAttribute& function) {
     std::string family = function.getElementFamily();
     if (family.empty()) family = "some";
@@ -195,14 +195,14 @@ class PartOf {
   std::set<const XdmfAttribute*> taken_;
 };
 
-/// Adds every array that PartOf reads.
+/// Adds the files of every array that PartOf reads.
 void add_arrays(XdmfGrid& grid, XdmfHeavyFiles& files) {
   for (XdmfArray* const array : mesh_arrays(grid))
     if (array != nullptr) files.add(*array);
   for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) files.add(*grid.getAttribute(k));
 }
 
-/// The name by which a block is chosen; no value if it is not.
+/// Returns the name by which a block is chosen; no value if it is not chosen.
 std::optional<std::string> chosen_name(const XdmfBlock& block, const cells::BlockChoice& choice) {
   for (const std::string& name : block.names)
     if (cells::is_chosen(choice, name)) return name;
@@ -216,8 +216,8 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
   add_cell_names();
   const auto reader = XdmfReader::New();
   XdmfHeavyFiles files(file);
-  // The library splits file names, which fails for those of unnamed files; in a text without a file, names are relative
-  // to the current directory.
+  // The library splits file names, which fails for names of unnamed files. If it parses a text instead of a file, names
+  // are relative to the current directory, which is therefore changed.
   const CurrentFolder current(io::is_inflated(file) || is_plain ? std::filesystem::path() : file.parent_path());
   const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
       !is_plain               ? reader->parse(rewritten_xdmf(file))

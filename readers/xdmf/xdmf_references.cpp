@@ -23,7 +23,7 @@ XdmfSubset* selection_of(XdmfArray& array) {
   return array.getReadMode() == XdmfArray::Reference ? dynamic_cast<XdmfSubset*>(array.getReference().get()) : nullptr;
 }
 
-/// Slowest first, like all sizes here.
+/// Returns the dimensions, the slowest first, like all sizes here.
 Sizes dimensions_of(XdmfArray& array) {
   const XdmfSubset* const selection = selection_of(array);
   return selection == nullptr || array.isInitialized() ? array.getDimensions() : selection->getDimensions();
@@ -46,7 +46,7 @@ void require_inside(const XdmfSubset& selection, const Sizes& sizes, const std::
         source, fmt::join(start, " "), fmt::join(stride, " "), fmt::join(count, " "), fmt::join(sizes, " ")));
 }
 
-/// Xdmf's library does not report this error; after the checks it cannot occur.
+/// Throws if a read has the wrong length. Xdmf's library does not report this error; after the checks it cannot occur.
 void require_count(std::size_t is, std::uint64_t should) {
   if (is != should) XdmfError::message(XdmfError::FATAL, fmt::format("there are {} numbers of {}", is, should));
 }
@@ -56,11 +56,11 @@ std::vector<T> values_of(XdmfArray& array) {
   read_numbers(array);
   std::vector<T> numbers(array.getSize());
   if (!numbers.empty()) array.getValues<T>(0, numbers.data(), static_cast<unsigned>(numbers.size()), 1, 1);
-  if (array.getNumberHeavyDataControllers() > 0) array.release();  // it can be read again
+  if (array.getNumberHeavyDataControllers() > 0) array.release();  // the numbers can be read again
   return numbers;
 }
 
-/// The library takes the first number of each row as that of the fastest dimension.
+/// The library interprets the first number of each row as that of the fastest dimension.
 template <class T>
 std::vector<T> selected(const std::vector<T>& all, const Sizes& sizes, const XdmfSubset& selection) {
   const Sizes start = selection.getStart(), stride = selection.getStride(), count = selection.getDimensions();
@@ -133,7 +133,7 @@ void read_numbers(XdmfArray& array) {
     const auto type = all.getArrayType();
     if (number_type_of(all) == NumberType::int64)
       fill(array, type, selection->getDimensions(), selected(values_of<std::int64_t>(all), sizes, *selection));
-    else  // doubles represent these exactly
+    else  // doubles represent the numbers exactly
       fill(array, type, selection->getDimensions(), selected(values_of<double>(all), sizes, *selection));
     return;
   }

@@ -23,7 +23,7 @@ namespace {
 
 const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
 
-/// Takes a string that libxml2 allocated.
+/// Takes ownership of a string that libxml2 allocated, and returns a copy.
 std::string taken(xmlChar* text) {
   if (text == nullptr) return "";
   std::string copy(reinterpret_cast<const char*>(text));
@@ -118,7 +118,7 @@ class Rewriting {
     }
   }
 
-  /// Distributes the times of a collection to its grids, from one list or from first, step and count.
+  /// Distributes the times of a collection to its grids. They are a list, or given by first time, step and count.
   void spread_times() {
     for (xmlNode* node : all("//Time[not(@Value)]")) {
       const std::string kind = property(node, "TimeType").value_or("");
@@ -142,7 +142,7 @@ class Rewriting {
     }
   }
 
-  /// The target of a reference, which may be a reference itself.
+  /// Returns the target of a reference, which may itself be a reference.
   xmlNode* target_of(xmlNode* node) {
     constexpr int most = 16;
     xmlNode* target = node;
@@ -172,7 +172,7 @@ class Rewriting {
       includes.push_back(xmlNewNode(nullptr, xml("include")));
       xmlReplaceNode(node, includes.back());
     }
-    // Paths do not change after this point.
+    // The paths of nodes do not change from here on.
     for (std::size_t k = 0; k < includes.size(); ++k)
       set(includes[k], "xpointer", fmt::format("xpointer({})", taken(xmlGetNodePath(targets[k]))));
     for (xmlNode* node : references) xmlFreeNode(node);
@@ -188,7 +188,7 @@ class Rewriting {
 
 std::string rewritten_xdmf(const std::filesystem::path& file) {
   const std::string source = file.string();
-  xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // otherwise it writes to stderr
+  xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // otherwise libxml2 writes to stderr
   const io::WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::unique_ptr<xmlDoc, void (*)(xmlDoc*)> document(

@@ -6,12 +6,13 @@
 
 namespace tessera::readers {
 
-/// An XDMF file's text in the form that Xdmf's library supports: elements that refer to others by Reference include
-/// these, attributes without a name or center get the defaults, items without a format have their numbers in the text,
-/// and lists of times are distributed to their grids. Throws Error(bad_input) for a reference to a missing element.
+/// Returns an XDMF file's text in a form that Xdmf's library supports: elements that refer to others by Reference
+/// contain copies of these, attributes without a name or center get the defaults, items without a format have their
+/// numbers in the text, and lists of times are distributed to their grids. Throws Error(bad_input) for a reference to a
+/// missing element.
 std::string rewritten_xdmf(const std::filesystem::path& file);
 
-/// Sets the current directory of the process during its lifetime, unless `folder` is empty.
+/// Changes the current directory of the process during the lifetime of this object, unless `folder` is empty.
 class CurrentFolder {
  public:
   explicit CurrentFolder(const std::filesystem::path& folder);

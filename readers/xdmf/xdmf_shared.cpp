@@ -45,7 +45,7 @@ bool has_same_mesh(XdmfGrid& a, XdmfGrid& b) {
   return topology == nullptr || other == nullptr || topology->getType()->getID() == other->getType()->getID();
 }
 
-/// Whether both have a field of one name at points or at cells that is not the same field.
+/// Whether both grids have, at points or at cells, a field of the same name, but not the same field.
 bool has_field_of_same_name(XdmfGrid& a, XdmfGrid& b) {
   for (unsigned k = 0; k < a.getNumberAttributes(); ++k)
     for (unsigned j = 0; j < b.getNumberAttributes(); ++j) {

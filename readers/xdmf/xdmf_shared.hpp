@@ -10,15 +10,15 @@ class XdmfArray;
 
 namespace tessera::readers {
 
-/// The arrays of a grid's points and cells; null where one is missing.
+/// Returns the arrays of a grid's points and cells. An entry is null if the array is missing.
 std::vector<XdmfArray*> mesh_arrays(XdmfGrid& grid);
 
-/// Merges grids of one mesh, which the file includes or names again for each field, into one block with all fields:
-/// FEniCS writes a grid for the mesh and a series for each function. A grid with a field whose name the block already
-/// has stays separate.
+/// Merges grids of the same mesh into one block with all of their fields. Files include or name a mesh again for each
+/// field: FEniCS writes a grid for the mesh and a series for each function. A grid stays separate if it has a field
+/// whose name the block already has.
 void merge_same_meshes(std::vector<XdmfBlock>& blocks);
 
-/// Arrays used by several of the blocks; they must not be released after the first.
+/// Returns the arrays that several of the blocks use. These must not be released after the first use.
 std::set<const XdmfArray*> shared_arrays(const std::vector<XdmfBlock>& blocks);
 
 }  // namespace tessera::readers

@@ -14,10 +14,10 @@
 namespace tessera::readers {
 namespace {
 
-/// Our type for a file's numbers; no value for texts, compounds and others.
+/// Returns our type for the numbers of a file; no value for texts, compounds and others.
 std::optional<NumberType> number_type_of(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
-  if (kind == H5T_ENUM) {  // h5py's bool
+  if (kind == H5T_ENUM) {  // h5py stores bool as an enumeration
     const Hdf5Handle base(H5Tget_super(type), H5Tclose);
     return number_type_of(base.get());
   }
@@ -57,7 +57,7 @@ hid_t library_type_of(NumberType type) {
   return H5T_NATIVE_DOUBLE;
 }
 
-/// "gzip (1)", the first of an array's filters that the library does not support; empty if there is none.
+/// Returns the first of an array's filters that the library does not support, like "gzip (1)"; empty if there is none.
 std::string missing_filter(hid_t array) {
   const Hdf5Handle creation(H5Dget_create_plist(array), H5Pclose);
   const int filters = H5Pget_nfilters(creation.get());
@@ -86,7 +86,7 @@ Hdf5File::Hdf5File(const std::filesystem::path& file)
     : source_(file.string()),
       file_(
           [&] {
-            H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print errors
+            H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // otherwise the library would print errors
             register_lzf();
             return H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
           }(),
@@ -174,7 +174,7 @@ GridNumbers Hdf5File::read(const Hdf5Array& array, std::span<const std::size_t> 
   const Hdf5Handle in_file(H5Dget_space(opened.get()), H5Sclose),
       in_memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose),
       type(H5Dget_type(opened.get()), H5Tclose);
-  // Numbers of an enumeration are those of its base type.
+  // The numbers of an enumeration have the enumeration's base type.
   const Hdf5Handle enumeration(
       H5Tget_class(type.get()) == H5T_ENUM ? H5Tget_native_type(type.get(), H5T_DIR_ASCEND) : H5I_INVALID_HID,
       H5Tclose);

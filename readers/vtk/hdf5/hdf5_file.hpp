@@ -15,7 +15,7 @@
 
 namespace tessera::readers {
 
-/// An identifier of the library, closed with this object.
+/// Owns an identifier of the HDF5 library, which is closed with this object.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -33,14 +33,14 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// An array of numbers in a file, of any type convertible to one of ours; the first axis is the slowest.
+/// An array of numbers in a file. Their type is convertible to one of ours; the first axis is the slowest.
 struct Hdf5Array {
   std::string path;  ///< "exchange/data"
   NumberType type = NumberType::float64;
   std::vector<std::size_t> lengths;
 };
 
-/// An open HDF5 file; supports lzf, h5py's filter.
+/// An open HDF5 file. Supports lzf, a filter of h5py.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& file);
@@ -49,22 +49,23 @@ class Hdf5File {
   [[nodiscard]] bool has(const char* name) const { return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0; }
   [[nodiscard]] bool has_attribute(const char* name) const { return H5Aexists(file_.get(), name) > 0; }
 
-  /// The text of an attribute of a group or an array; empty if it is missing.
+  /// Returns the text of an attribute of a group or an array; empty if it is missing.
   [[nodiscard]] std::string text_of(const char* object, const char* name) const;
 
-  /// The value of a numeric attribute, or `otherwise`.
+  /// Returns the value of a numeric attribute, or `otherwise` if it is missing.
   [[nodiscard]] long number_of(const char* object, const char* name, long otherwise) const;
 
-  /// An attribute's numbers; empty if it is missing or a text.
+  /// Returns the numbers of an attribute; empty if it is missing or a text.
   [[nodiscard]] std::vector<double> numbers_of(const char* object, const char* name) const;
 
-  /// All arrays of numbers in the file, or below a group, by their paths. Does not follow links to other files.
+  /// Returns all arrays of numbers in the file, or in a group and its subgroups, sorted by path. Does not follow links
+  /// to other files.
   [[nodiscard]] std::vector<Hdf5Array> arrays(const std::string& group = "/") const;
 
-  /// Whether an array has dimension scales, as NetCDF's library creates for its dimensions.
+  /// Whether an array has dimension scales, which NetCDF's library creates for its dimensions.
   [[nodiscard]] bool has_scales(const Hdf5Array& array) const;
 
-  /// Numbers from `first` on, `counts` along each axis. Throws Error(bad_input) if they cannot be read.
+  /// Reads the numbers from index `first` on, `counts` along each axis. Throws Error(bad_input) if they cannot be read.
   [[nodiscard]] GridNumbers read(const Hdf5Array& array, std::span<const std::size_t> first,
                                  std::span<const std::size_t> counts) const;
 

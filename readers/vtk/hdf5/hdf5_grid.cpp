@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::size_t most_components = 4;
 
-/// The axes of an array: steps, then z, y and x, then components.
+/// An array whose axes are steps, then z, y and x, then components.
 struct GridArray {
   const Hdf5Array* array = nullptr;
-  std::size_t first = 0;       ///< index of its z axis
-  std::size_t components = 1;  ///< along the last axis, if there is one after x
+  std::size_t first = 0;       ///< index of the z axis in the array
+  std::size_t components = 1;  ///< length of the axis after x, if there is one
   [[nodiscard]] std::array<std::size_t, 3> points() const {
     return {array->lengths[first + 2], array->lengths[first + 1], array->lengths[first]};
   }
@@ -42,8 +42,8 @@ std::optional<GridArray> grid_array(const Hdf5Array& array) {
   return GridArray{&array, rank - (has_components ? 4 : 3), has_components ? last : 1};
 }
 
-/// Numbers of one step, with the components of a sample interleaved. Missing values, according to NetCDF's attributes,
-/// are NaN.
+/// Reads the numbers of one step, with the components of a sample interleaved. Missing values, as defined by NetCDF's
+/// attributes, are NaN.
 GridNumbers read_step(const Hdf5File& file, const GridArray& of, std::size_t step) {
   std::vector<std::size_t> first(of.array->lengths.size(), 0), counts = of.array->lengths;
   for (std::size_t d = of.first; d-- > 0;) {
@@ -77,7 +77,7 @@ bool means(std::string_view field, std::string_view name) {
 
 using SameSize = std::vector<GridArray>;
 
-/// Arrays of one size: those with the field, else the largest group, the first of several.
+/// Chooses arrays of one size: those that include the field, otherwise the largest group, the first of several.
 const SameSize& choose_arrays(const std::vector<SameSize>& sizes, const std::string& field,
                               std::vector<std::string>& notes) {
   const SameSize* chosen = &sizes.front();
@@ -157,7 +157,8 @@ io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const 
 
 namespace {
 
-/// The axes of an array of a VTKHDF image with these numbers of points or cells; no value if it does not fit.
+/// Returns the axes of an array of a VTKHDF image with these numbers of points or cells; no value if the array does not
+/// fit.
 std::optional<GridArray> image_array(const Hdf5Array& array, const std::array<std::size_t, 3>& points) {
   const std::size_t rank = array.lengths.size();
   for (const std::size_t components : {0u, 1u}) {
@@ -172,7 +173,7 @@ scene::Error wrong_image(const std::string& source, const char* what) {
   return scene::bad_input(fmt::format("{}: VTKHDF: {}; the file is damaged, write it again", source, what));
 }
 
-/// Extent, origin, spacing and direction.
+/// Reads extent, origin, spacing and direction.
 io::ForeignPart image_of(const Hdf5File& file, const std::string& source) {
   io::ForeignPart part;
   set_unit_steps({1, 1, 1}, part);
@@ -193,7 +194,8 @@ io::ForeignPart image_of(const Hdf5File& file, const std::string& source) {
   return part;
 }
 
-/// The index of a step along an array's first axis, which is the step's number unless the file states another.
+/// Returns the index of a step along the first axis of an array. It is the number of the step unless the file states
+/// another index.
 std::size_t offset_of(const Hdf5File& file, const std::string& offsets, const std::string& name, std::size_t step) {
   for (const Hdf5Array& array : file.arrays(offsets))
     if (array.path == offsets + "/" + name && array.lengths.size() == 1 && step < array.lengths[0]) {

@@ -12,14 +12,15 @@ namespace tessera::readers {
 /// Whether a file has arrays of numbers of three or more dimensions.
 bool holds_arrays(const Hdf5File& file);
 
-/// Arrays of an HDF5 file that follows no convention: a regular grid of unit steps, z slowest and x fastest, of the
-/// arrays of one size; notes name the others. Fields are named by their paths. A last dimension of two to four contains
-/// components, the first of other ones steps.
+/// Reads arrays of an HDF5 file that does not follow any convention. All arrays of one size become fields of a regular
+/// grid of unit steps, z slowest and x fastest; notes name the other arrays. Fields are named by their paths. Of
+/// additional dimensions, a last dimension of two to four contains components, and the first of the others contains
+/// steps.
 io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const std::string& source,
                                 const nlohmann::json& request);
 
-/// A VTKHDF file of type ImageData, according to VTK's file format documentation; arrays may have a first dimension of
-/// steps.
+/// Reads a VTKHDF file of type ImageData, as VTK's file format documentation defines it. Arrays may have a first
+/// dimension for steps.
 io::ForeignContents read_vtk_hdf_image(Holdings& holdings, const Hdf5File& file, const std::string& source,
                                        const nlohmann::json& request);
 

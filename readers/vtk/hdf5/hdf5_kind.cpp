@@ -19,7 +19,8 @@
 namespace tessera::readers {
 namespace {
 
-/// NetCDF-4, or other HDF5 with dimension scales, which its library treats as NetCDF.
+/// Whether a file is read as NetCDF: it is NetCDF-4, or another HDF5 file with dimension scales, which NetCDF's library
+/// treats as NetCDF.
 bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   const std::vector<Hdf5Array> arrays = opened.arrays();
   const bool is_written_by_netcdf = opened.has_attribute("_NCProperties") || opened.has_attribute("_nc3_strict");
@@ -29,11 +30,11 @@ bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
   nc_close(id);
-  // NetCDF's dimensions have a meaning, such as time, which those of other arrays lack.
+  // Preferred because dimensions in NetCDF have a meaning, such as time, which those of other arrays do not have.
   return is_written_by_netcdf || holds_netcdf_grid(file) || !holds_arrays(opened);
 }
 
-/// Files without a type have the first version.
+/// Whether the type is that of a mesh. Files without a type are of the first version, which has only meshes.
 bool is_mesh_type(const std::string& vtk_type) { return vtk_type.empty() || vtk_type == "UnstructuredGrid"; }
 
 }  // namespace
@@ -75,10 +76,9 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
   const auto refuse = [&](const char* what, const char* remedy) {
     return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
   };
-  if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // not a grid
+  if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // the file is not a grid
   if (kind != Kind::cgns && request.value("part", 0) > 0)
-    return {};  // the first share is the
-                // whole
+    return {};  // only the first share contains anything: the whole file
   switch (kind) {
     case Kind::vtk:
       throw refuse(

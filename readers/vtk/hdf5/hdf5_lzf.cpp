@@ -14,12 +14,13 @@ namespace {
 
 constexpr H5Z_filter_t lzf_number = 32000;
 
-/// Number of bytes that `packed` becomes; no value if they do not fit into `out`, or it is damaged.
+/// Returns the number of bytes to which `packed` inflates; no value if they do not fit into `out`, or if `packed` is
+/// damaged.
 std::optional<std::size_t> inflate_lzf(std::span<const unsigned char> packed, std::span<unsigned char> out) {
   std::size_t in = 0, done = 0;
   while (in < packed.size()) {
     const std::size_t control = packed[in++];
-    if (control < 32) {  // a literal run of control + 1 bytes
+    if (control < 32) {  // a run of control + 1 literal bytes
       const std::size_t count = control + 1;
       if (count > packed.size() - in || count > out.size() - done) return std::nullopt;
       std::copy_n(packed.begin() + static_cast<std::ptrdiff_t>(in), count,
@@ -41,11 +42,11 @@ std::optional<std::size_t> inflate_lzf(std::span<const unsigned char> packed, st
   return done;
 }
 
-/// An H5Z_func_t: 0 is failure. The third parameter is the size of a chunk in bytes.
+/// An H5Z_func_t, which returns 0 for a failure. The third parameter is the size of a chunk in bytes.
 std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* parameter, std::size_t bytes,
                      std::size_t* size, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0) return 0;
-  constexpr std::size_t most = std::size_t{1} << 32;  // limit of a chunk in HDF5
+  constexpr std::size_t most = std::size_t{1} << 32;  // HDF5's limit of the size of a chunk
   std::size_t room = parameters > 2 && parameter[2] != 0 ? parameter[2] : *size;
   for (; room <= most; room *= 2) {
     void* const out = std::malloc(room);
@@ -59,7 +60,7 @@ std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* par
       return *done;
     }
     std::free(out);
-    if (bytes == 0 || room / bytes > 300) return 0;  // three bytes become at most 264
+    if (bytes == 0 || room / bytes > 300) return 0;  // three bytes inflate to at most 264 bytes
   }
   return 0;
 }

@@ -3,7 +3,8 @@
 
 namespace tessera::readers {
 
-/// Registers the filter lzf (32000) with HDF5's library, which does not include it; h5py writes it.
+/// Registers the filter lzf (32000) with the HDF5 library. h5py writes this filter, and the library does not include
+/// it.
 void register_lzf();
 
 }  // namespace tessera::readers

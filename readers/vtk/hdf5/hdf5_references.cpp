@@ -58,7 +58,7 @@ class References {
       waiting_.pop_back();
       if (seen_.insert(file).second) visit(file);
     }
-    // Done last, when everything opened on the way to a source is known to be sound.
+    // Done last, when all files that are opened on the path to a source have been checked.
     for (const auto& [file, sources] : sources_)
       for (const auto& [in_file, dataset] : sources)
         if (is_virtual_in(in_file, dataset)) leads_[file].insert(in_file);
@@ -92,7 +92,7 @@ class References {
       std::array<char, 4096> name{};
       off_t offset = 0;
       hsize_t size = 0;
-      // The library resolves these only from the current directory.
+      // The library resolves these names only relative to the current directory.
       if (H5Pget_external(creation.get(), static_cast<unsigned>(k), name.size() - 1, name.data(), &offset, &size) >= 0)
         static_cast<void>(sound(file, Path(name.data())));
     }
@@ -115,7 +115,7 @@ class References {
     }
   }
 
-  /// The file that the library opens for this name, which must be checked too.
+  /// Returns the file that the library opens for this name, which must be checked, too.
   std::optional<Path> lead_to(const Path& from, const std::string& name) {
     std::error_code unknown;
     if (name == ".") return from;
@@ -171,8 +171,9 @@ class References {
   Path first_, folder_;
   std::vector<Path> waiting_;
   std::set<Path> seen_;
-  std::map<Path, std::set<std::pair<Path, std::string>>> sources_;  ///< of the virtual datasets of a file
-  std::map<Path, std::set<Path>> leads_;                            ///< to files of other virtual datasets
+  std::map<Path, std::set<std::pair<Path, std::string>>> sources_;  ///< sources of the virtual datasets, per file
+  std::map<Path, std::set<Path>> leads_;                            ///< for each file, the files of other virtual
+                                                                    ///< datasets to which it leads
 };
 
 }  // namespace

@@ -21,16 +21,16 @@
 namespace tessera::readers {
 namespace {
 
-/// A range of an array's tuples.
+/// A range of tuples of an array.
 struct Stretch {
   std::size_t first = 0, count = 0;
   [[nodiscard]] std::size_t end() const { return first + count; }
 };
 
-/// One part of the mesh at a step, given by its ranges in the arrays shared by all parts and steps.
+/// One part of the mesh at a step, given by the ranges of its tuples in the arrays that all parts and steps share.
 struct Part {
   Stretch points, cells, connectivity, offsets;
-  std::size_t points_before = 0, cells_before = 0;  ///< in the previous parts of the step
+  std::size_t points_before = 0, cells_before = 0;  ///< counts in the previous parts of the step
 };
 
 class HdfMesh {
@@ -77,7 +77,7 @@ class HdfMesh {
     return *array;
   }
 
-  /// All numbers of a one-dimensional array; empty if it is missing.
+  /// Reads all numbers of a one-dimensional array; empty if it is missing.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const {
     const Hdf5Array* const array = find(name);
     if (array == nullptr || array->lengths.size() != 1) return {};
@@ -90,7 +90,7 @@ class HdfMesh {
     return static_cast<std::size_t>(number);
   }
 
-  /// The first number of the step's row; no value without steps or the array.
+  /// Reads the first number of the step's row; no value if there are no steps or the array is missing.
   [[nodiscard]] std::optional<std::size_t> at_step(const std::string& name) const {
     const Hdf5Array* const array = step_ ? find(name) : nullptr;
     if (array == nullptr) return std::nullopt;
@@ -100,12 +100,12 @@ class HdfMesh {
     return count_from(file_.read(*array, first, counts).as_doubles().front(), name);
   }
 
-  /// The range of the step's parts among those of all steps.
+  /// Returns the range of the step's parts among the parts of all steps.
   [[nodiscard]] Stretch part_numbers(std::size_t all) const {
     if (!step_) return {0, all};
     const std::size_t first = at_step("Steps/PartOffsets").value_or(0);
     if (const auto count = at_step("Steps/NumberOfParts")) return {first, *count};
-    // Each step with its own parts has the same number of them.
+    // If steps have parts of their own, all have the same number of parts.
     const std::vector<double> offsets = numbers("Steps/PartOffsets");
     return {first, all / std::max<std::size_t>(std::set<double>(offsets.begin(), offsets.end()).size(), 1)};
   }
@@ -174,7 +174,7 @@ class HdfMesh {
     return part;
   }
 
-  /// Arrays may begin a step at another index than the points and cells.
+  /// Adds fields. In an array, a step may begin at another index than the step's points and cells.
   [[nodiscard]] std::vector<io::ForeignArray> fields(const std::string& kind, const Stretch& tuples, std::size_t before,
                                                      std::vector<std::string>* notes) const {
     const std::string group = fmt::format("VTKHDF/{}/", kind), active = file_.text_of(group.c_str(), "Scalars");
@@ -201,7 +201,7 @@ class HdfMesh {
   const Hdf5File& file_;
   const std::string& source_;
   std::vector<Hdf5Array> arrays_;
-  std::optional<std::size_t> step_;  ///< of a file with steps
+  std::optional<std::size_t> step_;  ///< set if the file has steps
 };
 
 }  // namespace

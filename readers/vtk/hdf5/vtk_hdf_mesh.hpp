@@ -9,12 +9,13 @@
 
 namespace tessera::readers {
 
-/// A VTKHDF file of type UnstructuredGrid at one of its time steps, which VTK 9.1 does not support.
+/// Reads a VTKHDF file of type UnstructuredGrid at one of its time steps, which VTK 9.1 does not support.
 ///
-/// Source  "VTKHDF format specification", VTK's documentation, version 2.5: parts one after the other; those of a step
-///         start at Steps/PartOffsets and are as many as Steps/NumberOfParts. Its points, cells and connectivity start
-///         at Steps/PointOffsets, CellOffsets and ConnectivityIdOffsets, its arrays at Steps/PointDataOffsets and
-///         CellDataOffsets if these have them. `Offsets` has one number more than cells for each part.
+/// Source  "VTKHDF format specification", VTK's documentation, version 2.5: parts are stored one after the other; those
+///         of a step start at Steps/PartOffsets, and Steps/NumberOfParts is their number. The points, cells and
+///         connectivity of a step start at Steps/PointOffsets, CellOffsets and ConnectivityIdOffsets, and its arrays at
+///         Steps/PointDataOffsets and CellDataOffsets if these exist. For each part, `Offsets` has one number more than
+///         there are cells.
 io::ForeignContents read_vtk_hdf_mesh(Holdings& holdings, const Hdf5File& file, const std::string& source,
                                       const nlohmann::json& request);
 

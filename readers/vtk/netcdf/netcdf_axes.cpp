@@ -26,7 +26,7 @@ bool is_pressure(std::string_view units) {
                            "dbar", "decibar", "decibars", "atm",      "atmosphere", "atmospheres"});
 }
 
-/// Vertical coordinates without units that are largest at the ground.
+/// Whether a name is that of a vertical coordinate without units that is largest at the ground.
 bool is_sigma(std::string_view standard_name) {
   return is_one_of(standard_name, {"atmosphere_sigma_coordinate", "atmosphere_hybrid_sigma_pressure_coordinate"});
 }
@@ -90,7 +90,7 @@ AxisRole role_of_name(const std::string& name) {
 
 struct Evidence {
   AxisRole role = AxisRole::unknown;
-  int strength = 0;  ///< a name is weakest
+  int strength = 0;  ///< 0 for a name, which is the least reliable
 };
 
 Evidence evidence_of_attributes(const NetcdfFile& file, const NetcdfVariable& coordinate) {
@@ -169,7 +169,7 @@ bool counts_downwards(const NetcdfFile& file, const NetcdfVariable& coordinate) 
   for (const char* const attribute : {"positive", "_CoordinateZisPositive"})
     if (const std::string positive = word(attribute); positive == "up" || positive == "down") return positive == "down";
   const std::string standard_name = word("standard_name"), units = word("units"), name = lower(coordinate.name);
-  if (contains(standard_name, "ln_pressure")) return false;  // minus the logarithm of pressure
+  if (contains(standard_name, "ln_pressure")) return false;  // the quantity is minus the logarithm of pressure
   return is_pressure(units) || is_sigma(standard_name) || units == "sigma_level" ||
          word("_CoordinateAxisType") == "pressure" || contains(standard_name, "pressure") ||
          contains(standard_name, "depth") || name.starts_with("depth") ||

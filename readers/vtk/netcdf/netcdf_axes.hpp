@@ -15,31 +15,31 @@ namespace tessera::readers {
 /// common names.
 enum class AxisRole : std::uint8_t { x, y, z, time, member, unknown };
 
-/// Which dimensions of a variable are spatial axes. The others are steps: time, ensemble members and any others, the
-/// last the fastest.
+/// Which dimensions of a variable are spatial axes. The other dimensions are steps: time, ensemble members and any
+/// others; the last of them is the fastest.
 struct AxisOrder {
   GridAxes along{};
   std::vector<std::size_t> steps;
 };
 
-/// The role given by a coordinate variable's attributes, or else by its name.
+/// Returns the role that a coordinate variable's attributes state, or else the one that its name suggests.
 AxisRole role_of(const NetcdfFile& file, const NetcdfVariable& coordinate);
 
-/// The variable with a dimension's coordinates: the one of the same name, else one with only this dimension that
-/// `coordinates` names. Null if there is none.
+/// Returns the variable with the coordinates of a dimension: the variable with the same name, otherwise a variable that
+/// `coordinates` names and that has only this dimension. Null if there is none.
 const NetcdfVariable* coordinate_of(const NetcdfFile& file, const NetcdfVariable& variable,
                                     const NetcdfDimension& dimension);
 
-/// The variables that a variable's attribute `coordinates` names.
+/// Returns the variables that a variable's attribute `coordinates` names.
 std::vector<const NetcdfVariable*> named_coordinates(const NetcdfFile& file, const NetcdfVariable& variable);
 
-/// Determined by the attributes of the dimensions' coordinates, the strongest first; the missing ones of z, y and x, in
-/// this order, are the last of the unidentified dimensions. No value if a variable has fewer than three spatial
-/// dimensions.
+/// Determines the axes from the attributes of the dimensions' coordinates, the most reliable attributes first. If some
+/// of z, y and x remain unidentified, they are the last of the unidentified dimensions, in this order. No value if a
+/// variable has fewer than three spatial dimensions.
 std::optional<AxisOrder> axes_of(const NetcdfFile& file, const NetcdfVariable& variable);
 
-/// Whether a vertical coordinate increases downwards: CF 4.3. `positive` decides; otherwise pressure, depth and sigma
-/// do, which are 0 or smallest at the top.
+/// Whether a vertical coordinate increases downwards (CF 4.3). The attribute `positive` determines this; without it,
+/// pressure, depth and sigma do, because they are 0 or smallest at the top.
 bool counts_downwards(const NetcdfFile& file, const NetcdfVariable& coordinate);
 
 }  // namespace tessera::readers

@@ -11,7 +11,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Whether a variable has both horizontal dimensions, and otherwise only steps.
+/// Whether a variable has both horizontal dimensions, and otherwise only dimensions of steps.
 bool is_horizontal(const NetcdfVariable& candidate, const NetcdfVariable& variable, const AxisOrder& order) {
   std::size_t in_space = 0;
   for (const NetcdfDimension& dimension : candidate.dimensions) {
@@ -41,7 +41,7 @@ bool have_same_dimensions(const NetcdfVariable& a, const NetcdfVariable& b) {
                     [](const NetcdfDimension& left, const NetcdfDimension& right) { return left.id == right.id; });
 }
 
-/// Reads a horizontal coordinate, x fastest, or its bounds, with the corners of each cell consecutive.
+/// Reads a horizontal coordinate, x fastest, or the bounds of one, with the corners of each cell consecutive.
 std::vector<double> read_horizontal(const NetcdfFile& file, const NetcdfVariable& coordinate,
                                     const NetcdfVariable& variable, const AxisOrder& order,
                                     std::span<const std::size_t> step_indices, std::size_t corners) {
@@ -65,19 +65,19 @@ std::vector<double> read_horizontal(const NetcdfFile& file, const NetcdfVariable
   GridNumbers numbers = read_values(file, coordinate, first, counts).numbers;
   const std::size_t width = io::size_of(numbers.type) * corners;
   if (corners > 1) {
-    if (extra + 1 != counts.size()) return {};  // corners are the fastest, by CF 7.1
+    if (extra + 1 != counts.size()) return {};  // corners are the fastest dimension (CF 7.1)
     counts.back() = 1;
   }
-  counts.push_back(1);  // instead of z
+  counts.push_back(1);  // the length of the missing z axis
   along[2] = counts.size() - 1;
   numbers.bytes = in_grid_order(std::move(numbers.bytes), width, counts, along);
   return numbers.as_doubles();
 }
 
 using Corners = std::array<std::vector<double>, 2>;  // longitudes, latitudes: four per cell, x fastest
-using Order = std::array<std::size_t, 4>;            // which corner is at (0, 0), (1, 0), (1, 1) and (0, 1)
+using Order = std::array<std::size_t, 4>;            // which corners are at (0, 0), (1, 0), (1, 1), (0, 1)
 
-/// Sum of the distances between corners shared by neighbours, if corners are in this order.
+/// Returns the sum of the distances between corners that neighbours should share, if corners are in this order.
 double mismatch_of(const Corners& corners, std::size_t columns, std::size_t rows, const Order& order) {
   double sum = 0;
   const auto add = [&](std::size_t cell, std::size_t corner, std::size_t other, std::size_t of_other) {
@@ -95,7 +95,8 @@ double mismatch_of(const Corners& corners, std::size_t columns, std::size_t rows
   return sum;
 }
 
-/// CF 7.1 lists corners around a cell, but starting with any of them, and in either direction.
+/// Finds the order of corners. CF 7.1 lists them around a cell, but the first may be any corner, and the direction is
+/// not defined.
 Order order_of_corners(const Corners& corners, std::size_t columns, std::size_t rows) {
   Order best{0, 1, 2, 3};
   double least = std::numeric_limits<double>::infinity();
@@ -109,14 +110,14 @@ Order order_of_corners(const Corners& corners, std::size_t columns, std::size_t 
   return best;
 }
 
-/// Points between cells, x fastest, from the corners of the adjacent cells.
+/// Computes the points between cells, x fastest, from the corners of the adjacent cells.
 Corners lattice_of(const Corners& corners, std::size_t columns, std::size_t rows) {
   const Order order = order_of_corners(corners, columns, rows);
   Corners lattice;
   for (std::size_t a = 0; a < 2; ++a)
     for (std::size_t j = 0; j <= rows; ++j)
       for (std::size_t i = 0; i <= columns; ++i) {
-        double value = std::numeric_limits<double>::quiet_NaN();  // until an adjacent cell is known
+        double value = std::numeric_limits<double>::quiet_NaN();  // NaN until a value of an adjacent cell is found
         for (const std::size_t down : {0u, 1u})
           for (const std::size_t left : {0u, 1u}) {
             if (i + 1 < 1 + left || j + 1 < 1 + down || i - left >= columns || j - down >= rows) continue;
@@ -141,7 +142,7 @@ std::optional<CurvedCoordinates> curved_coordinates_of(const NetcdfFile& file, c
   for (const NetcdfVariable& other : file.variables())
     if (have_same_dimensions(other, variable))
       if (const auto others = found_in(named_coordinates(file, other))) return others;
-  // If each dimension has a coordinate, the grid is rectilinear, perhaps in a projection.
+  // If each dimension has a coordinate variable, the grid is rectilinear, perhaps in a projection.
   if (coordinate_of(file, variable, variable.dimensions[order.along[0]]) != nullptr ||
       coordinate_of(file, variable, variable.dimensions[order.along[1]]) != nullptr)
     return std::nullopt;

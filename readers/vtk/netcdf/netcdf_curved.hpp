@@ -18,20 +18,21 @@ struct CurvedCoordinates {
   const NetcdfVariable* y = nullptr;
 };
 
-/// The coordinates of a variable, by its attribute `coordinates`, else by that of another variable of the same
-/// dimensions, else the longitude and latitude of these dimensions. No value if there are none.
+/// Returns the coordinates of a variable: those that its attribute `coordinates` names, otherwise those that another
+/// variable of the same dimensions names, otherwise the longitude and latitude of these dimensions. No value if there
+/// are none.
 std::optional<CurvedCoordinates> curved_coordinates_of(const NetcdfFile& file, const NetcdfVariable& variable,
                                                        const AxisOrder& order);
 
-/// Points of a curvilinear grid, x fastest. Values belong to the points or, if coordinates have bounds, to cells.
+/// Points of a curvilinear grid, x fastest. Values belong to the points or, if coordinates have bounds, to the cells.
 struct CurvedGrid {
   std::array<std::size_t, 3> points{};
   std::vector<double> positions;
   bool has_cells = false;
 };
 
-/// `z` has the heights of the variable's levels, `z_bounds` those between them, one more. Coordinates with steps use
-/// those of `step_indices`, one per entry of order.steps.
+/// Creates the grid. `z` contains the heights of the variable's levels, `z_bounds` the heights between them, which are
+/// one more. If coordinates have steps, `step_indices` selects one, with an index for each entry of order.steps.
 CurvedGrid curved_grid(const NetcdfFile& file, const NetcdfVariable& variable, const AxisOrder& order,
                        std::span<const std::size_t> step_indices, const CurvedCoordinates& coordinates,
                        std::span<const double> z, std::span<const double> z_bounds, std::vector<std::string>& notes);

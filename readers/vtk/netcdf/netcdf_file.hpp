@@ -11,15 +11,15 @@
 namespace tessera::readers {
 
 struct NetcdfDimension {
-  int id = 0;  ///< unique in the file, across groups
+  int id = 0;  ///< unique in the file, over all groups
   std::string name;
   std::size_t length = 0;
 };
 
 struct NetcdfVariable {
-  int group = 0, id = 0;  ///< identifiers of the library
-  std::string name;       ///< without its groups
-  std::string path;       ///< with them: "ocean/temperature"
+  int group = 0, id = 0;  ///< the library's identifiers
+  std::string name;       ///< name without groups
+  std::string path;       ///< name with groups: "ocean/temperature"
   nc_type type = NC_NAT;
   std::vector<NetcdfDimension> dimensions;  ///< the first is the slowest
 };
@@ -35,16 +35,17 @@ class NetcdfFile {
   /// Numeric variables; those of text or user-defined types are left out.
   [[nodiscard]] const std::vector<NetcdfVariable>& variables() const { return variables_; }
 
-  /// The variable to which another one refers by name: in its group, else in the enclosing ones; null if there is none.
+  /// Returns the variable to which another variable refers by name. It is searched for in the group of `from`, then in
+  /// the enclosing groups; null if there is none.
   [[nodiscard]] const NetcdfVariable* find(const NetcdfVariable& from, const std::string& name) const;
 
-  /// Numbers of a variable's attribute; empty if it is missing or a text.
+  /// Returns the numbers of a variable's attribute; empty if it is missing or a text.
   [[nodiscard]] std::vector<double> numbers(const NetcdfVariable& of, const char* attribute) const;
 
-  /// The type of a variable's attribute; NC_NAT if it is missing.
+  /// Returns the type of a variable's attribute; NC_NAT if it is missing.
   [[nodiscard]] nc_type attribute_type(const NetcdfVariable& of, const char* attribute) const;
 
-  /// A variable's text attribute, of characters or one string; empty if it is missing.
+  /// Returns a text attribute of a variable, stored as characters or as one string; empty if it is missing.
   [[nodiscard]] std::string text(const NetcdfVariable& of, const char* attribute) const;
 
   [[nodiscard]] const std::string& source() const { return source_; }

@@ -29,9 +29,9 @@ struct GridVariable {
   AxisOrder order;
 };
 
-/// Variables with the same spatial axes: one grid.
+/// Variables that have the same spatial axes, and so are fields of the same grid.
 struct GridOfVariables {
-  std::string dimensions;  ///< as listed, "(lev, lat, lon)"
+  std::string dimensions;  ///< dimensions as text, "(lev, lat, lon)"
   std::array<int, 3> ids{};
   std::optional<CurvedCoordinates> curved;
   bool is_flat = false;
@@ -50,7 +50,7 @@ bool are_same(const std::optional<CurvedCoordinates>& a, const std::optional<Cur
   return a.has_value() == b.has_value() && (!a || (a->x == b->x && a->y == b->y));
 }
 
-/// Variables that are bounds of the coordinates of others, and so are not fields: CF 7.1.
+/// Returns the variables that contain bounds of coordinates (CF 7.1), and so are not fields.
 std::set<const NetcdfVariable*> bounds_in(const NetcdfFile& file) {
   std::set<const NetcdfVariable*> bounds;
   for (const NetcdfVariable& variable : file.variables())
@@ -60,7 +60,7 @@ std::set<const NetcdfVariable*> bounds_in(const NetcdfFile& file) {
   return bounds;
 }
 
-/// All grids with variables of three spatial dimensions.
+/// Returns all grids of variables with three spatial dimensions.
 std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
   std::vector<GridOfVariables> grids;
   const std::set<const NetcdfVariable*> bounds = bounds_in(file);
@@ -93,7 +93,8 @@ bool means(std::string_view field, const std::string& name) {
   return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
 }
 
-/// The grid that has the field; else the one with the most variables, the first of several. A note names the others.
+/// Returns the grid that has the field, otherwise the one with the most variables, the first of several. A note names
+/// the others.
 const GridOfVariables& choose_grid(const std::vector<GridOfVariables>& grids, const std::string& field,
                                    std::vector<std::string>& notes) {
   const GridOfVariables* chosen = &grids.front();
@@ -116,7 +117,7 @@ std::size_t steps_of(const GridVariable& field) {
   return field.order.steps.empty() || all > 1e15 ? 0 : static_cast<std::size_t>(all);
 }
 
-/// Indices along the dimensions that are not spatial, the last the fastest.
+/// Returns the indices of a step along the dimensions that are not spatial; the last of them is the fastest.
 std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step) {
   std::vector<std::size_t> indices(field.order.steps.size());
   for (std::size_t k = indices.size(); k-- > 0;) {
@@ -127,8 +128,8 @@ std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step)
   return indices;
 }
 
-/// Coordinates of the only dimension of steps, unchanged, or a single time; empty if there are several, or it is not
-/// time.
+/// Returns the coordinates of the only dimension of steps, unchanged, or a single time. Empty if there are several
+/// dimensions, or if the dimension is not time.
 std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) {
   std::vector<double> times;
   for (const std::size_t d : field.order.steps) {
@@ -142,7 +143,7 @@ std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) 
   return times;
 }
 
-/// Axes other than time are steps too, which a note mentions.
+/// Adds a note if axes other than time are used as steps.
 void note_steps(const NetcdfFile& file, const GridVariable& field, std::vector<std::string>& notes) {
   std::vector<std::string> names;
   bool is_time = true;
@@ -170,7 +171,7 @@ bool has_degrees(const NetcdfFile& file, const NetcdfVariable& coordinate) {
   return file.text(coordinate, "units").starts_with("degree") && (role == AxisRole::x || role == AxisRole::y);
 }
 
-/// Longitudes that cross the end of the circle continue beyond it.
+/// Makes longitudes that cross the end of the circle continue beyond it.
 void unwind(std::vector<double>& longitudes) {
   const bool rises = longitudes.size() > 2 && longitudes[1] > longitudes[0];
   for (std::size_t k = 1; k < longitudes.size(); ++k) {
@@ -180,7 +181,7 @@ void unwind(std::vector<double>& longitudes) {
   }
 }
 
-/// Coordinates along an axis, in the order to be drawn: z increases upwards.
+/// Returns the coordinates along an axis in the order in which they are drawn: z increases upwards.
 GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field, std::size_t axis,
                               std::vector<std::string>& notes) {
   const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[axis]];
@@ -198,7 +199,8 @@ GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field,
   return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
 }
 
-/// Levels between those of the values, one more: the coordinate's bounds if adjacent ones match, else halfway.
+/// Returns the levels between those of the values, one more than these: the bounds of the coordinate if adjacent bounds
+/// match, otherwise the midpoints.
 std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& field, const std::vector<double>& z) {
   std::vector<double> between;
   const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[2]];
@@ -209,7 +211,7 @@ std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& f
       bounds->dimensions[1].length == 2) {
     const std::vector<double> ends = read_whole(file, *bounds, 2 * dimension.length).as_doubles();
     const double sign = counts_downwards(file, *coordinate) ? -1 : 1;
-    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // pairs are in decreasing order
+    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // pairs of bounds are decreasing
     bool fit = true;
     for (std::size_t k = 0; k < z.size(); ++k) {
       const double low = sign * ends[2 * k + (is_turned ? 1 : 0)], high = sign * ends[2 * k + (is_turned ? 0 : 1)];
@@ -252,7 +254,7 @@ io::ForeignArray read_field(Holdings& holdings, const NetcdfFile& file, const Gr
   return hold_field_numbers(holdings, field.variable->path, std::move(values.numbers));
 }
 
-/// A grid without its fields.
+/// A grid with positions, but without fields.
 struct PlacedGrid {
   io::ForeignPart part;
   bool has_cells = false;  ///< the fields are cell data
@@ -313,7 +315,7 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
         grid.curved ? io::ForeignPart::Kind::structured : io::ForeignPart::Kind::rectilinear;
     return contents;
   }
-  // Variables that do not change with time exist at all steps.
+  // The number of steps; variables that do not change with time exist at all steps.
   std::size_t steps = 0;
   const GridVariable* with_steps = nullptr;
   for (const GridVariable& field : grid.fields)

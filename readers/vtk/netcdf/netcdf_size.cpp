@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
-/// Sizes of a header's parts; counts have 4 bytes, in version 5 8 bytes.
+/// Computes the sizes of parts of a header. Counts have 4 bytes, in version 5 8 bytes.
 class Header {
  public:
   Header(int file, int format)
@@ -23,7 +23,7 @@ class Header {
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
 
-  /// `of`: a variable, or NC_GLOBAL.
+  /// `of` is a variable, or NC_GLOBAL.
   [[nodiscard]] std::uint64_t attributes(int of, int n) const {
     std::uint64_t bytes = list();
     for (int k = 0; k < n; ++k) {

@@ -5,9 +5,9 @@
 
 namespace tessera::readers {
 
-/// The minimum size in bytes of a complete NetCDF classic file (versions 1, 2 and 5) with this header ("NetCDF Classic
-/// Format Specification", Unidata): NetCDF's library reads zeros beyond a file's end. 0 for NetCDF-4, which is HDF5 and
-/// detects it itself, and if the header cannot be read.
+/// Returns the smallest size in bytes of a complete NetCDF classic file (versions 1, 2 and 5) with this header ("NetCDF
+/// Classic Format Specification", Unidata). Needed because NetCDF's library reads zeros beyond the end of a file. 0 if
+/// the header cannot be read, and for NetCDF-4, because HDF5 detects truncated files itself.
 std::uint64_t least_netcdf_bytes(int file);
 
 }  // namespace tessera::readers

@@ -44,8 +44,8 @@ NumberType number_type_of(nc_type type, const std::string& is_unsigned) {
   }
 }
 
-/// The value that NetCDF's library stores where a program writes nothing. Bytes have one too, but every byte is a valid
-/// value.
+/// Returns the value that NetCDF's library stores where a program did not write a value. Bytes have a default, too, but
+/// it is not used, because every byte is a valid value.
 std::optional<double> default_fill_of(nc_type type) {
   switch (type) {
     case NC_SHORT:
@@ -75,7 +75,7 @@ bool is_float(nc_type type) { return type == NC_FLOAT || type == NC_DOUBLE; }
 struct Packing {
   NumberType type = NumberType::float64;  ///< stored type
   double scale = 1, shift = 0;
-  bool single = false;              ///< unpacked numbers are float32
+  bool single = false;              ///< numbers are float32 after unpacking
   std::vector<double> missing;      ///< as stored
   std::optional<double> unwritten;  ///< the default fill value
   double low = -infinity, high = infinity;
@@ -90,7 +90,7 @@ void add_valid_range(const NetcdfFile& file, const NetcdfVariable& variable, Pac
     std::vector<double> ends = file.numbers(variable, name);
     const bool is_range = std::string_view(name) == "valid_range", is_low = std::string_view(name) == "valid_min";
     if (ends.size() != (is_range ? 2u : 1u)) continue;
-    // If integers are packed and the limits have a float type, these are limits of the unpacked values.
+    // If integers are packed and the limits have a floating-point type, the limits are those of unpacked values.
     const bool unpacked = is_float(file.attribute_type(variable, name)) && !is_float(variable.type);
     for (double& end : ends)
       if (!unpacked && end < 0) end += wrap;
@@ -132,7 +132,8 @@ Packing packing_of(const NetcdfFile& file, const NetcdfVariable& variable) {
   return packing;
 }
 
-/// Unpacks some numbers in place and counts in `result` those that become NaN. Returns whether any number changed.
+/// Unpacks some numbers in place, and counts in `result` the numbers that become NaN. Returns whether any number
+/// changed.
 bool unpack_some(const Packing& packing, std::span<double> values, NetcdfValues& result) {
   bool changes = packing.is_packed();
   for (double& value : values) {
@@ -151,7 +152,7 @@ bool unpack_some(const Packing& packing, std::span<double> values, NetcdfValues&
   return changes;
 }
 
-/// Unpacked numbers, or the same ones if nothing changes them.
+/// Returns the unpacked numbers, or `stored` if nothing changes them.
 NetcdfValues unpack(GridNumbers stored, const Packing& packing) {
   NetcdfValues result;
   const std::size_t count = stored.count();
