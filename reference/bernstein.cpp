@@ -23,14 +23,14 @@ double binomial(int n, int k) { return binomials[static_cast<std::size_t>(n)][st
 
 double entry(const Powers& of, int i) { return of[static_cast<std::size_t>(i)]; }
 
-/// x to the powers 0 to n.
+/// Returns x to the powers 0 to n.
 Powers powers(double x, int n) {
   Powers result{1};
   for (std::size_t i = 1; i <= static_cast<std::size_t>(n); ++i) result[i] = result[i - 1] * x;
   return result;
 }
 
-/// Values and slopes of the polynomials of one degree in one variable.
+/// Values and slopes of the Bernstein polynomials of one degree in one variable.
 struct Line {
   Powers value{}, slope{};
 
@@ -46,7 +46,8 @@ struct Line {
   }
 };
 
-/// Value and gradient of a polynomial on a simplex. `at` has the powers of r, s, t and of the fourth coordinate.
+/// Returns the value of a polynomial on a simplex, and its gradient in `gradient`. `at` contains the powers of r, s, t
+/// and of the fourth coordinate.
 double simplex_function(int n, const std::array<int, 3>& e, const std::array<Powers, 4>& at, glm::dvec3& gradient) {
   const int last = n - e[0] - e[1] - e[2];
   const double factor = binomial(n, e[0]) * binomial(n - e[0], e[1]) * binomial(n - e[0] - e[1], e[2]);
@@ -60,8 +61,8 @@ double simplex_function(int n, const std::array<int, 3>& e, const std::array<Pow
   return factor * x[0] * x[1] * x[2] * x[3];
 }
 
-/// Matrix from equally spaced values to coefficients, for polynomials of one degree on a simplex of one, two or three
-/// dimensions.
+/// Returns the matrix that converts equally spaced values to coefficients, for polynomials of one degree on a simplex
+/// of one, two or three dimensions.
 Matrix simplex_from_lattice(const std::vector<std::array<int, 3>>& exponents, int n) {
   Matrix values(exponents.size(), exponents.size());
   for (std::size_t row = 0; row < exponents.size(); ++row) {
@@ -172,7 +173,7 @@ Matrix BernsteinBasis::from_lattice() const {
 std::vector<FacePatch> BernsteinBasis::faces() const {
   std::vector<FacePatch> result;
   const auto [nr, ns, nt] = degree_;
-  // `exponents(i, j)`: the exponents of the cell's function with index (i, j) on the face.
+  // `exponents(i, j)` returns the exponents of the cell's function with index (i, j) on the face.
   const auto add = [&](bool triangle, int nu, int nv, const glm::dvec3& origin, const glm::dvec3& u,
                        const glm::dvec3& v, const auto& exponents) {
     FacePatch face{triangle, nu, nv, origin, u, v, {}};

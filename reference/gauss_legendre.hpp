@@ -5,8 +5,8 @@
 
 namespace tessera::reference {
 
-/// Gauss-Legendre quadrature on [-1, 1] with eight points: nodes +-x with weight w. Exact to degree 15. Abramowitz,
-/// Stegun, table 25.4.
+/// Gauss-Legendre quadrature on [-1, 1] with eight points: each entry represents the nodes +x and -x with weight w.
+/// Exact for polynomials up to degree 15. Source: Abramowitz, Stegun, table 25.4.
 struct GaussNode {
   double x, weight;
 };

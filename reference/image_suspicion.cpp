@@ -32,7 +32,7 @@ class Picture {
     return {p[0], p[1], p[2], p[3]};
   }
 
-  /// Largest difference to a neighbour.
+  /// Returns the largest difference to a neighbour.
   [[nodiscard]] float edge(int x, int y) const {
     const Colour here = at(x, y);
     float largest = 0;
@@ -50,15 +50,16 @@ class Picture {
 
   struct Misfit {
     float least = 0;  ///< smallest over the directions
-    float alike = 0;  ///< similarity of the directions, and smoothness of the neighbours: mean over spread
+    float alike = 0;  ///< mean over spread, which is high if the directions are similar and the neighbours smooth
   };
 
-  /// Deviation of the pixel from the cubic through its four neighbours along a line, for four directions: along a
-  /// straight edge the smallest is small; for a single wrong pixel all are similar. `least`: negligible differences.
+  /// Returns the deviation of the pixel from the cubic through its four neighbours along a line, for four directions.
+  /// Along a straight edge the smallest deviation is small; for a single wrong pixel all are similar. Differences up to
+  /// `least` are negligible.
   [[nodiscard]] Misfit misfit(int x, int y, float least) const {
     constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
     std::array<Colour, 4> off{};
-    Colour bend{};  // of the neighbours alone: nonzero at a step, but not around a single wrong pixel
+    Colour bend{};  // bend of the neighbours alone: nonzero at a step, but not around a single wrong pixel
     std::size_t count = 0;
     Misfit misfit{std::numeric_limits<float>::infinity(), 0};
     for (const auto& [i, j] : directions) {
@@ -77,8 +78,8 @@ class Picture {
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      // At a step, bend and misfit are equal, so a quarter keeps the ratio below four. Smooth matter of wave number k
-      // has a bend of k^3 times its amplitude; with the full bend it would hide larger errors.
+      // At a step, bend and misfit are equal; with a quarter of the bend, the ratio stays below four there. Smooth
+      // matter of wave number k has a bend of k^3 times its amplitude, so the full bend would hide larger errors.
       float mean = 0, spread = bend[n] / 4;
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
@@ -87,8 +88,9 @@ class Picture {
     return misfit;
   }
 
-  /// Jump across one side of a 4x4 block beyond the extrapolation of the slopes on both sides, averaged over the side.
-  /// The side begins at (x, y), goes along (along_x, along_y), and has the block's pixels towards (in_x, in_y).
+  /// Returns the jump across one side of a 4x4 block beyond the extrapolation of the slopes on both sides, averaged
+  /// over the side. The side begins at (x, y) and has the direction (along_x, along_y); the pixels of the block are in
+  /// the direction (in_x, in_y).
   [[nodiscard]] float jump(int x, int y, int along_x, int along_y, int in_x, int in_y) const {
     Colour sum{};
     for (int n = 0; n < 4; ++n) {
@@ -103,7 +105,7 @@ class Picture {
     return largest;
   }
 
-  /// For the block whose first pixel is (x, y).
+  /// Returns the score of the block whose first pixel is (x, y).
   [[nodiscard]] float block(int x, int y) const {
     std::array<float, 4> sides{jump(x, y, 0, 1, 1, 0), jump(x + 3, y, 0, 1, -1, 0), jump(x, y, 1, 0, 0, 1),
                                jump(x, y + 3, 1, 0, 0, -1)};
@@ -115,8 +117,8 @@ class Picture {
   const scene::Image& image_;
 };
 
-/// A misfit relative to the median on a surrounding ring that it does not affect: matter is rough in one place and
-/// smooth in another.
+/// Returns a misfit relative to the median on a surrounding ring, which the pixel does not affect. Needed because
+/// matter is rough in one place and smooth in another.
 float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, int y, float least) {
   constexpr int reach = 4, step = 2;
   std::array<float, 16> ring{};

@@ -10,12 +10,12 @@ namespace tessera::reference {
 /// finite has a score above all others.
 struct ImageSuspicion {
   SuspicionMap edge;     ///< largest difference to one of the eight neighbours
-  SuspicionMap outlier;  ///< misfit relative to the surrounding pixels' (Suspicion::outlier)
-  SuspicionMap block;    ///< jump across the sides of its 4x4 block (second largest), at one of 16 pixels
-  SuspicionMap plateau;  ///< pixels at the centre of 3x3 of exactly this colour; at one pixel per colour
+  SuspicionMap outlier;  ///< misfit relative to that of the surrounding pixels (Suspicion::outlier)
+  SuspicionMap block;    ///< jump across the sides of the pixel's 4x4 block (second largest), at one of its 16 pixels
+  SuspicionMap plateau;  ///< centres of 3x3 pixels of exactly one colour; one pixel is set per colour
 };
 
-/// `least`: differences that are negligible. `threads` 0: all cores.
+/// Differences up to `least` are negligible. `threads` 0: all cores.
 ImageSuspicion suspect(const scene::Image& image, double least, int threads = 0);
 
 }  // namespace tessera::reference

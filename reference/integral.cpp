@@ -22,7 +22,7 @@ double Integral::opacity() const { return -std::expm1(-sum_.optical_depth); }
 Integral::Optics Integral::optics(double s, double within, double origin) const {
   const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
   const auto of = [](const scene::Knot& k) { return Optics{k.extinction, {k.color.x, k.color.y, k.color.z}}; };
-  // The last knot at or below `within`: the upper one of a step.
+  // The last knot at or below `within`, which is the upper one of a step.
   const auto above =
       static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), within, value_less) - knots_.begin());
   if (above == 0) return of(knots_.front());
@@ -97,7 +97,7 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
   const double total = length * (a.extinction + b.extinction) / 2;
   for (double begin = 0; begin < 1 && sum_.optical_depth < opaque_depth;) {
     const double extinction = a.extinction + rise * begin;
-    // The longest step d with (extinction + max(rise, 0) d) d length <= largest_step.
+    // Computes the longest step d with (extinction + max(rise, 0) d) d length <= largest_step.
     const double q = largest_step / length;
     const double step = rise > 0 ? 2 * q / (extinction + std::sqrt(extinction * extinction + 4 * rise * q))
                                  : q / extinction;  // infinite if nothing absorbs
@@ -116,7 +116,8 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
     sum_.optical_depth += optical_depth_at(width);
     begin = end;
   }
-  // The whole piece in closed form, free of the steps' rounding and also correct if the loop ended early.
+  // The optical depth of the whole piece in closed form, which has no rounding errors of the steps and is correct even
+  // if the loop ended early.
   sum_.optical_depth = optical_depth_before + total;
 }
 

@@ -9,7 +9,7 @@
 
 namespace tessera::reference {
 
-/// Where a scalar, monotone in [u0, u1], takes a value between those at the ends.
+/// Returns the position where a scalar that is monotone in [u0, u1] takes a value between those at the ends.
 template <class Scalar>
 double crossing(const Scalar& scalar, double u0, double u1, double value) {
   const bool rising = scalar.at(u1) > scalar.at(u0);
@@ -20,8 +20,8 @@ double crossing(const Scalar& scalar, double u0, double u1, double value) {
   }
 }
 
-/// `ends`, between which the scalar is monotone, and the positions where it takes the knots' values minus `origin`, in
-/// order.
+/// Returns, in order, `ends` and the positions where the scalar takes the knots' values minus `origin`. The scalar is
+/// monotone between neighbouring `ends`.
 template <class Scalar>
 std::vector<double> knot_cuts(const Scalar& scalar, const std::vector<double>& ends, std::span<const scene::Knot> knots,
                               double origin) {

@@ -8,7 +8,7 @@
 namespace tessera::reference {
 namespace {
 
-/// One layer: known pixels are stored, others are computed.
+/// One layer. Known pixels are stored, the others are computed.
 class OneLayer final : public RayReference {
  public:
   OneLayer(const LayerReference& reference, const Peel& peel, scene::ImageSize size, std::size_t number,

@@ -17,8 +17,8 @@ struct LayerVerification {
   bool met = true;            ///< Verification::met() for every layer
 };
 
-/// Judges layers in the pixels in which an image of `size` is judged (choose_pixels()), by the same rules: a pixel of a
-/// layer is excused if its value is inside the range of this layer over rays within 1/1024 pixel.
+/// Judges layers in the same pixels as an image of `size` (choose_pixels()), by the same rules: a pixel of a layer is
+/// excused if its value is inside the range of this layer over rays within 1/1024 pixel.
 LayerVerification verify_layers(std::span<const scene::Image> layers, const LayerReference& reference, const Peel& peel,
                                 double bound, std::size_t count, const Suspects& suspects, int threads = 0);
 

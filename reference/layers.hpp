@@ -11,13 +11,13 @@
 #include "reference/ray_reference.hpp"
 #include "tessera/settings.hpp"
 
-/// Opacity peeling (tessera::Peel), implemented separately for the reference: the integral along a ray restarts
-/// wherever its own optical depth reaches -log(1 - threshold), until the last layer, which has the rest.
+/// Opacity peeling (tessera::Peel), implemented separately for the reference. The integral along a ray restarts
+/// wherever its own optical depth reaches -log(1 - threshold). The last layer has everything that remains.
 namespace tessera::reference {
 
-/// The sums of an integral since the last cut.
+/// The sums of an integral since the last cut between layers.
 struct LayerSum {
-  std::array<double, 3> color{0, 0, 0};  ///< linear RGB, premultiplied, as if nothing were in front of the cut
+  std::array<double, 3> color{0, 0, 0};  ///< linear RGB, premultiplied, without what is in front of the cut
   double optical_depth = 0;
   double first_visible_depth = std::numeric_limits<double>::infinity();
 };
@@ -28,8 +28,8 @@ class LayerCuts {
   explicit LayerCuts(const Peel& peel)
       : limit_(-std::log1p(-peel.threshold)), count_(static_cast<std::size_t>(peel.layers)) {}
 
-  /// Whether the current layer ends at or before this optical depth. Tolerates rounding, for example of surfaces whose
-  /// combined opacity equals the threshold.
+  /// Whether the current layer ends at or before this optical depth. Tolerates rounding, which occurs for example if
+  /// the combined opacity of surfaces equals the threshold.
   [[nodiscard]] bool ends(double optical_depth) const {
     constexpr double granted = 1e-12;
     return ended_.size() + 1 < count_ && optical_depth >= limit_ * (1 - granted);
@@ -40,8 +40,8 @@ class LayerCuts {
     sum = {};
   }
 
-  /// The position in [u0, u1] of a segment at which the layer ends: optical_depth(u) increases with u, and ends() is
-  /// true at u1. Bisection down to neighbouring doubles.
+  /// Returns the position in [u0, u1] of a segment at which the layer ends. optical_depth(u) must increase with u, and
+  /// ends() must be true at u1. Bisection down to neighbouring doubles.
   template <class OpticalDepth>
   [[nodiscard]] double place(double u0, double u1, const OpticalDepth& optical_depth) const {
     double low = u0, high = u1;
@@ -52,7 +52,7 @@ class LayerCuts {
     }
   }
 
-  /// All layers of a ray, including the current one; layers that it does not reach are empty.
+  /// Returns all layers of a ray, including the current one. Layers that the ray does not reach are empty.
   [[nodiscard]] std::vector<Pixel> pixels(const LayerSum& at_hand) const;
 
  private:
@@ -66,10 +66,10 @@ class LayerReference {
  public:
   virtual ~LayerReference() = default;
 
-  /// The layers of the ray through pixel coordinates (x, y), Peel::layers of them. Callable from any thread.
+  /// Returns the Peel::layers layers of the ray through pixel coordinates (x, y). Callable from any thread.
   [[nodiscard]] virtual std::vector<Pixel> layers(double x, double y, const Peel& peel) const = 0;
 
-  /// The layers of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  /// Returns the layers of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
   [[nodiscard]] virtual std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
                                                                int threads = 0) const = 0;
 

@@ -8,7 +8,7 @@
 namespace tessera::reference {
 namespace {
 
-/// Cells that span more knots count as spanning all of them.
+/// Cells that span more knots are treated as if they spanned all knots.
 constexpr std::ptrdiff_t most_knots = 16;
 
 }  // namespace
@@ -20,7 +20,7 @@ double LightError::matter(const scene::Knot& knot) const {
 
 LightError::LightError(const scene::TransferFunction& function, scene::Emission emission, double noise)
     : knots_(function.knots().begin(), function.knots().end()), emission_(emission), noise_(noise) {
-  // A ray loses light by absorption and gains it by emission: both count.
+  // Both absorption, by which a ray loses light, and emission, by which it gains light, count.
   const auto light = [&](const scene::Knot& k, int c) {
     return k.color[c] * (emission_ == scene::Emission::independent ? 1 : k.extinction);
   };
@@ -30,7 +30,7 @@ LightError::LightError(const scene::TransferFunction& function, scene::Emission 
     double difference = std::abs(a.extinction - b.extinction);
     for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(light(a, c) - light(b, c)));
     if (!(difference > 0)) continue;
-    if (b.value - a.value < noise) {  // no wider than the noise: a step
+    if (b.value - a.value < noise) {  // no wider than the noise, so treated as a step
       steps_.push_back({b.value, difference});
       largest_jump_ = std::max(largest_jump_, difference);
     } else {

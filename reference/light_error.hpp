@@ -9,21 +9,22 @@
 
 namespace tessera::reference {
 
-/// How much the light in a cell depends on rounding of the field: used by mesh_suspicion.hpp and grid_suspicion.hpp.
-/// Estimates to rank pixels by, not bounds.
+/// How much the light in a cell depends on rounding of the field; used by mesh_suspicion.hpp and grid_suspicion.hpp.
+/// The numbers are estimates for ranking pixels, not bounds.
 class LightError {
  public:
-  /// `noise`: rounding error of the field in a renderer; > 0.
+  /// `noise` is the rounding error of the field in a renderer; > 0.
   LightError(const scene::TransferFunction& function, scene::Emission emission, double noise);
 
-  /// Error of light or opacity per unit of length, in a cell with these values at its corners. At a step it is the jump
-  /// times the fraction of the cell that may be on the wrong side: the ratio of rounding to the cell's range of values,
-  /// or the fraction of corners on the step itself. On a ramp it is the slope times the noise.
+  /// Returns the error of light or opacity per unit of length in a cell with these values at its corners. At a step of
+  /// the transfer function, it is the jump times the fraction of the cell that may be on the wrong side. That fraction
+  /// is the ratio of the rounding error to the cell's range of values, or the fraction of corners on the step itself.
+  /// On a ramp, the error is the slope times the noise.
   [[nodiscard]] double per_length(std::span<const double> corners) const;
-  /// Upper limit of per_length() for any cell with values in [low, high].
+  /// Returns an upper limit of per_length() for any cell with values in [low, high].
   [[nodiscard]] double most_per_length(double low, double high) const;
 
-  /// Largest extinction (independent emission: also colour) of values in [low, high].
+  /// Returns the largest extinction (for independent emission, also colour) of values in [low, high].
   [[nodiscard]] double densest(double low, double high) const;
 
  private:

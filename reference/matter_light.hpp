@@ -11,19 +11,20 @@
 
 namespace tessera::reference {
 
-/// Shading of tets by the field's gradient in each (scene/shading.hpp), implemented separately for the reference.
+/// Shading of tets by the gradient of the field in each tet (scene/shading.hpp), implemented separately for the
+/// reference.
 class MatterLight {
  public:
   /// Throws scene::Error(bad_input) if the direction to the light has length zero, or for light that does not depend on
   /// extinction.
   MatterLight(const scene::Shading& shading, const scene::Camera& camera, scene::Emission emission);
 
-  /// The light in a tet of point data, seen along a ray with that direction, of any length.
+  /// Returns the light in a tet of point data, seen along the direction `ray`, whose length does not matter.
   [[nodiscard]] Integral::Light in(const scene::TetMeshView& mesh, std::size_t tet, const glm::dvec3& ray) const;
 
  private:
   scene::Shading shading_;
-  glm::dvec3 to_light_;  ///< world, unit length
+  glm::dvec3 to_light_;  ///< direction to the light in the world, unit length
 };
 
 }  // namespace tessera::reference

@@ -19,11 +19,11 @@ class RayReference {
  public:
   virtual ~RayReference() = default;
 
-  /// The ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). Callable from any
-  /// thread.
+  /// Returns the colour of the ray through pixel coordinates (x, y). Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
+  /// Callable from any thread.
   [[nodiscard]] virtual Pixel pixel(double x, double y) const = 0;
 
-  /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  /// Returns the colours of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
   [[nodiscard]] virtual std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const;
 
   [[nodiscard]] virtual scene::ImageSize size() const = 0;
@@ -34,7 +34,7 @@ class RayReference {
   RayReference& operator=(const RayReference&) = default;
 };
 
-/// All pixels of an image, row-major.
+/// Returns all pixels of an image, row-major.
 std::vector<PixelIndex> all_pixels(scene::ImageSize size);
 
 using tessera::random_pixels;

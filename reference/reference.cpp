@@ -20,13 +20,14 @@
 namespace tessera::reference {
 namespace {
 
-/// Pixels that one task renders in one pass over the tets: enough to amortize the pass, few enough to hold few
-/// segments.
+/// Number of pixels that one task renders in one pass over the tets: enough to amortize the pass, but few enough that
+/// their segments fit into memory.
 constexpr std::size_t pixels_per_pass = 256;
 
 bool row_major_less(const PixelIndex& a, const PixelIndex& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
 
-/// The first pixel whose centre is not left of (above) `coordinate`, and the last that is not right of (below) it.
+/// Return the first pixel whose centre is not left of (above) `coordinate`, and the last whose centre is not right of
+/// (below) it.
 int first_pixel(double coordinate) { return static_cast<int>(std::clamp(std::ceil(coordinate - 0.5), -1.0, 1e6)); }
 int last_pixel(double coordinate) { return static_cast<int>(std::clamp(std::floor(coordinate - 0.5), -1.0, 1e6)); }
 
@@ -117,9 +118,11 @@ Reference::Box Reference::box(std::span<const ProjectedVertex> vertices) const {
     box.x_low = std::min(box.x_low, h.x / h.z), box.x_high = std::max(box.x_high, h.x / h.z);
     box.y_low = std::min(box.y_low, h.y / h.z), box.y_high = std::max(box.y_high, h.y / h.z);
   }
-  if (!(deepest > 0)) return {infinity, infinity, -infinity, -infinity};                 // behind the eye
-  if (!(least_w > 1e-6 * largest_w)) return {-infinity, -infinity, infinity, infinity};  // at or across the eye plane
-  // The quotients are rounded, and so are lines of sight; the margin is larger than that.
+  if (!(deepest > 0)) return {infinity, infinity, -infinity, -infinity};  // the tet is behind the eye
+  if (!(least_w > 1e-6 * largest_w))
+    return {-infinity, -infinity, infinity, infinity};  // the tet is at or across the
+                                                        // plane of the eye
+  // Both the quotients and lines of sight are rounded; the margin is larger than that.
   const double x_margin = 1e-7 + 1e-9 * std::max(std::abs(box.x_low), std::abs(box.x_high));
   const double y_margin = 1e-7 + 1e-9 * std::max(std::abs(box.y_low), std::abs(box.y_high));
   return {box.x_low - x_margin, box.y_low - y_margin, box.x_high + x_margin, box.y_high + y_margin};
@@ -267,8 +270,8 @@ std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::ui
   const std::uint64_t width = static_cast<std::uint64_t>(size.width);
   const std::uint64_t total = width * static_cast<std::uint64_t>(size.height);
   if (count >= total) return reference::all_pixels(size);
-  // Floyd's choice of a subset: Bentley, Floyd, "A Sample of Brilliance", CACM 1987. The remainder's bias is below
-  // 2^-32 for any image.
+  // Floyd's algorithm for choosing a subset: Bentley, Floyd, "A Sample of Brilliance", CACM 1987. The bias of the
+  // remainder is below 2^-32 for any image.
   std::mt19937_64 random(seed);
   std::unordered_set<std::uint64_t> chosen;
   for (std::uint64_t last = total - count; last < total; ++last)

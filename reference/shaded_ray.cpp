@@ -15,7 +15,7 @@
 namespace tessera::reference {
 namespace {
 
-/// How far a ray may be moved, in pixels, and still count as meeting two faces at one depth: twice the rounding of a
+/// How far, in pixels, a ray may be moved to decide that it meets two faces at the same depth: twice the rounding of a
 /// vertex (View::project), plus the rounding of a pixel coordinate from long double to double.
 constexpr double shift = 0x1p-32, last_places = 0x1p-50;
 
@@ -24,7 +24,7 @@ constexpr double most_reach = 1e-9;
 
 }  // namespace
 
-/// One ray's light.
+/// Computes the light of one ray.
 class Reference::Ray {
  public:
   Ray(const Reference& reference, std::span<const RaySegment> segments, double x, double y,
@@ -79,30 +79,30 @@ class Reference::Ray {
   /// The intersection of a ray with a face of a surface.
   struct Mark {
     double depth, reach;
-    /// In the order in which a ray meets faces in one plane.
+    /// Values are in the order in which a ray meets faces that are in one plane.
     enum class Kind : std::uint8_t { leaves, goes_through, enters } kind;
     std::size_t paint;
     glm::dvec3 normal;
     double scalar;
-    std::array<Slope, 2> slope{};  ///< in x and y
+    std::array<Slope, 2> slope{};  ///< slopes in x and y
   };
 
-  /// Faces at one depth, that of the first one.
+  /// Faces that a ray meets at one depth, which is that of the first face.
   struct Place {
     double depth, reach;
-    std::size_t first, last;  ///< range of its marks
+    std::size_t first, last;  ///< range of the marks at this place
   };
 
   /// The part of a segment between two places.
   struct Piece {
-    std::size_t before;  ///< the next place
-    bool at;             ///< it is at that place
+    std::size_t before;  ///< index of the next place
+    bool at;             ///< whether the piece is at that place
     double front, back;
-    std::size_t segment, first, last;  ///< first, last: range of the segment's crossings
+    std::size_t segment, first, last;  ///< `first` and `last`: range of the segment's crossings
   };
 
-  /// The change of depth at which a ray shifted as above meets a face: by the plane's slope and, for rounding, by the
-  /// farthest of the corners and the largest of their depths.
+  /// Returns by how much the depth may change at which a ray shifted by `shift` meets a face. Depends on the slope of
+  /// the plane and, for rounding, on the farthest of the corners and the largest of their depths.
   [[nodiscard]] double reach(const glm::dvec3& normal, double depth, double far, double size) const {
     const View& view = reference_.view_;
     const View::Ray ray = view.ray(x_, y_);
@@ -134,7 +134,7 @@ class Reference::Ray {
       }
     for (const TriangleCrossing& t : reference_.triangles_on(x_, y_)) {
       const double within = reach(t.triangle->normal, t.hit.depth, t.triangle->corners);
-      // At the eye's own position, only rounding puts a face in front of the eye.
+      // At the position of the eye itself, a face is in front of the eye only by rounding.
       const double nearest = reference_.view_.nearest() > 0 ? reference_.view_.nearest() : within;
       if (nearest < t.hit.depth && t.hit.depth < reference_.view_.farthest())
         marks_.push_back({t.hit.depth, within, Mark::Kind::goes_through,
@@ -142,8 +142,8 @@ class Reference::Ray {
     }
   }
 
-  /// Adds the boundary at an end of a segment, if there is one: an open face or the plane that cuts the mesh there,
-  /// which a ray meets once.
+  /// Adds the boundary at an end of a segment, if there is one: an open face or the plane that cuts the mesh there. A
+  /// ray meets it once.
   void add_boundary(const RaySegment& s, bool front) {
     const double depth = front ? s.front : s.back;
     const auto add = [&](const glm::dvec3& normal, double within) {
@@ -155,7 +155,7 @@ class Reference::Ray {
       const double at = front ? kept_.nearest : kept_.farthest;
       const double within = reach(plane->normal, at, reference_.corners(s.tet));
       if (front ? s.front <= at + within : s.back >= at - within) {
-        // A part of a cell that is only a rounding error has no boundary.
+        // A part of a cell that consists only of a rounding error does not have a boundary.
         const bool thin = front ? !(s.back > at + within) : !(s.front < at - within);
         bool& met = front ? met_nearest_ : met_farthest_;
         if (thin || met) return;
@@ -200,9 +200,9 @@ class Reference::Ray {
     return slopes;
   }
 
-  /// Marks at one depth in the order met by a ray shifted by (e, e^2) pixel, as in intersect(): first the plane that
-  /// comes nearer by the shift in x, among equal ones the plane that comes nearer by y, and in one plane by kind and
-  /// paint.
+  /// Sorts marks at one depth in the order in which a ray shifted by (e, e^2) pixel meets them, as in intersect():
+  /// first the plane that comes nearer by the shift in x; among equal planes, the one that comes nearer by the shift in
+  /// y; for marks in the same plane, by kind and paint.
   static std::vector<Mark> in_order(std::vector<Mark> marks, std::size_t axis) {
     if (marks.size() < 2) return marks;
     if (axis == 2) {
@@ -226,7 +226,7 @@ class Reference::Ray {
     return ordered;
   }
 
-  /// Cuts a segment at all places inside it, so that overlapping cells are also in the order of depth.
+  /// Cuts a segment at all places inside it, so that overlapping cells are in the order of depth, too.
   void cut(std::size_t number) {
     const RaySegment& s = segments_[number];
     Progress& progress = progress_[number];
@@ -236,7 +236,7 @@ class Reference::Ray {
                             kept_.farthest_plane != nullptr};
     if (!reference_.surfaces_.empty())
       progress.crossings = surface_crossings(reference_.surfaces_, reference_.corners(s.tet), x_, y_, depths);
-    std::size_t begin = places_.size(), end = 0;  // the places in [begin, end) are inside
+    std::size_t begin = places_.size(), end = 0;  // the places in [begin, end) are inside the segment
     while (begin > 0 && places_[begin - 1].depth > s.front + places_[begin - 1].reach) --begin;
     while (end < places_.size() && places_[end].depth < s.back - places_[end].reach) ++end;
     if (begin > end) {
@@ -274,7 +274,7 @@ class Reference::Ray {
     advance(piece.segment, part, s.change_front + (s.change_back - s.change_front) * part);
   }
 
-  /// Integrates up to that fraction of the segment.
+  /// Integrates up to the fraction `part` of the segment.
   void advance(std::size_t segment, double part, double change) {
     const RaySegment& s = segments_[segment];
     Progress& at = progress_[segment];
@@ -302,7 +302,7 @@ class Reference::Ray {
   std::vector<Mark> marks_;
   std::vector<Place> places_;
   std::vector<Piece> pieces_;
-  /// The part of a segment that has been integrated.
+  /// How much of a segment has been integrated.
   struct Progress {
     double part = 0, change = 0;
     Integral::Light light;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double accuracy = 1e-14, rounding_of_scale = 2e-16;
 
-/// Clenshaw's sum of a Chebyshev series.
+/// Evaluates a Chebyshev series by Clenshaw's sum.
 double series(const std::array<double, SmoothScalar::terms>& c, std::size_t used, double u) {
   double one = 0, two = 0;
   for (std::size_t k = used; k-- > 1;) {
@@ -53,7 +53,7 @@ std::array<double, SmoothScalar::terms> SmoothScalar::nodes() {
 double SmoothScalar::at(double u) const { return series(coefficients_, used_, u); }
 
 double SmoothScalar::slope(double u) const {
-  // Sum of k c_k U_{k-1}(u), with U by its recurrence.
+  // Computes the sum of k c_k U_{k-1}(u), with U from its recurrence.
   double before = 0, second_kind = 1, sum = 0;
   for (std::size_t k = 1; k < used_; ++k) {
     sum += static_cast<double>(k) * coefficients_[k] * second_kind;
@@ -72,7 +72,7 @@ double SmoothScalar::tail() const {
 
 std::vector<double> SmoothScalar::turning_points() const {
   constexpr double narrowest = 0x1p-24, noise = 1e-14;
-  // |U''| bounded by the series: T_k'' is k^2 (k^2 - 1) / 3 at most.
+  // A bound of |U''| from the series: T_k'' is at most k^2 (k^2 - 1) / 3.
   double largest_bend = 0, size = 0;
   for (std::size_t k = 1; k < used_; ++k) {
     const double kk = static_cast<double>(k * k);

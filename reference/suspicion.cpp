@@ -9,14 +9,14 @@
 namespace tessera::reference {
 namespace {
 
-/// Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014: the output function.
+/// The output function of Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 std::uint64_t mixed(std::uint64_t z) {
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
   z = (z ^ z >> 27) * 0x94d049bb133111eb;
   return z ^ z >> 31;
 }
 
-/// Different for each pixel.
+/// Returns a key that is different for each pixel.
 std::uint64_t key(PixelIndex p) { return static_cast<std::uint64_t>(p.y) << 32 | static_cast<std::uint32_t>(p.x); }
 
 struct Ranked {
@@ -24,7 +24,7 @@ struct Ranked {
   std::size_t pixel;
 };
 
-/// The `most` pixels with the highest keys, in order.
+/// Returns the `most` pixels with the highest keys, in order.
 std::vector<std::size_t> highest(std::vector<Ranked> pixels, std::size_t most) {
   most = std::min(most, pixels.size());
   const auto before = [](const Ranked& a, const Ranked& b) {
@@ -38,7 +38,7 @@ std::vector<std::size_t> highest(std::vector<Ranked> pixels, std::size_t most) {
   return order;
 }
 
-/// Moves the best pixel of each 8x8 block to the front and keeps the order otherwise.
+/// Moves the best pixel of each 8x8 block to the front. The order does not change otherwise.
 void spread(std::vector<std::size_t>& pixels, int width) {
   constexpr std::size_t side = 8;
   std::unordered_set<std::size_t> met;
@@ -68,7 +68,8 @@ double hashed(std::uint64_t n, std::uint64_t salt) {
 
 std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, std::size_t most) {
   // Weighted sampling without replacement: Efraimidis, Spirakis, "Weighted random sampling with a reservoir", IPL 2006.
-  // Scores span decades and mean little more than an order; their fourth roots give low ones a chance.
+  // Scores span decades, and only their order is meaningful; with their fourth roots as weights, low scores have a
+  // chance.
   std::vector<Ranked> by_score, by_draw;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map[i] > 0)) continue;
@@ -126,7 +127,7 @@ std::vector<ChosenPixel> choose_pixels(scene::ImageSize size, std::size_t count,
   count = static_cast<std::size_t>(std::min<std::uint64_t>(count, total));
   const std::size_t suspicious = count < total ? 2 * count / 3 : 0;
   for (const PixelIndex& p : random_pixels(size, count - suspicious, seed)) take({p, std::nullopt});
-  // Random choice may have taken some of them.
+  // Some of these may have been chosen at random before.
   if (suspicious > 0)
     for (const ChosenPixel& pixel : by_turns(suspects, count)) take(pixel);
   std::vector<PixelIndex> more = random_pixels(size, count, seed + 1);

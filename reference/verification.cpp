@@ -19,7 +19,7 @@ Verification verify(const scene::Image& image, const RayReference& reference, st
   std::vector<PixelIndex> places;
   places.reserve(pixels.size());
   for (const ChosenPixel& pixel : pixels) places.push_back(pixel.at);
-  // Without a bound no pixel exceeds it, so none is examined for an excuse.
+  // Without a bound, no pixel exceeds it, so none is examined for an excuse.
   const double most = bound.value_or(std::numeric_limits<double>::infinity());
   const std::vector<PixelJudgement> judged = judge_each(image, reference, most, places, threads, places.size());
 

@@ -23,19 +23,19 @@ struct Tally {
 ///
 /// Passed  only excused pixels are over the bound, and among those chosen at random no more are excused than a sample
 ///         may contain (most_excused()). All pixels chosen as suspicious may be excused, because they were chosen where
-///         that is likely.
+///         excuses are likely.
 struct Verification {
-  Judgement judgement;                     ///< of all checked pixels; rms_error of the random ones (an estimate)
-  std::optional<double> bound;             ///< no value: errors are reported, nothing is promised
-  Tally random;                            ///< all checked pixels, if these are all of the image
+  Judgement judgement;                     ///< of all checked pixels; rms_error: an estimate from the random ones
+  std::optional<double> bound;             ///< no value: errors are reported, but there is no promise to check
+  Tally random;                            ///< all checked pixels, if these are the whole image
   std::array<Tally, suspicions> chosen{};  ///< indexed by Suspicion
-  std::optional<Suspicion> worst;          ///< why the worst pixel was chosen; no value: at random
+  std::optional<Suspicion> worst;          ///< why the pixel with the largest error was chosen; no value: at random
 
   [[nodiscard]] bool met() const;
 };
 
 /// Judges `count` pixels of an image (choose_pixels()). Every pixel over the bound is examined for an excuse, until a
-/// hundred have none. `threads` 0: all cores.
+/// hundred pixels do not have one. `threads` 0: all cores.
 Verification verify(const scene::Image& image, const RayReference& reference, std::optional<double> bound,
                     std::size_t count, const Suspects& suspects, int threads = 0);
 

@@ -17,7 +17,8 @@ Direction cross(const Direction& a, const Direction& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Divides by the length (and first by the largest component, against overflow): (0, 0, 49) gives exactly (0, 0, 1).
+/// Divides by the length, and before that by the largest component to prevent overflow: (0, 0, 49) gives exactly (0, 0,
+/// 1).
 template <class Vector>
 Vector unit(const Vector& v) {
   const auto largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -30,7 +31,7 @@ constexpr int finest_unit = -32;  // exponents of two
 constexpr int position_bits = 46, direction_bits = 40;
 constexpr long double most_per_tangent = 4194304;  // 2^22
 
-/// The nearest multiple of 2^exponent.
+/// Returns the nearest multiple of 2^exponent.
 double rounded_to(long double v, int exponent) {
   return static_cast<double>(std::ldexp(std::nearbyint(std::ldexp(v, -exponent)), exponent));
 }

@@ -12,9 +12,9 @@ namespace tessera::reference {
 /// by definition.
 struct ProjectedVertex {
   glm::dvec3 homogeneous;  ///< (X, Y, w): pixel coordinates X/w and Y/w. Orthographic: w = 1. Perspective: w = depth
-  /// Decides on which side a ray passes; rounded (View::project). For a vertex in front of the eye (x, y, 1), behind it
-  /// (-x, -y, -1), with the pixel coordinates of the line through it and the eye; in the plane of the eye a direction
-  /// (X, Y, 0). Orthographic: `homogeneous`.
+  /// Decides on which side a ray passes; rounded (View::project). For a vertex in front of the eye it is (x, y, 1), for
+  /// one behind the eye (-x, -y, -1), with the pixel coordinates of the line through the vertex and the eye; in the
+  /// plane of the eye it is a direction (X, Y, 0). In orthographic projection it is `homogeneous`.
   glm::dvec3 sight;
   double depth;  ///< planar: along the view direction from the position, world units; negative behind the eye
 };
@@ -25,14 +25,14 @@ class View {
   /// The camera and size must be valid.
   View(const scene::Camera& camera, scene::ImageSize size);
 
-  /// The pixel coordinates of `sight` are rounded to the nearest multiple of 2^-32 pixel. So vertices intended to be on
-  /// pixel centres, or in the plane of the eye and a row or column of them, are exactly there despite decimal noise in
-  /// the camera. In perspective that unit is too fine far outside the image or for very long lenses. There the unit is
-  /// at least 2^(n-46) pixels, where 2^n is the power of two at or below the largest of |x|, |y| and the pixels per
-  /// unit of tangent (at most 2^22). From 2^46 pixels on, a vertex counts as in the plane of the eye; the unit for X
-  /// and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|. Computed in long
-  /// double, so that the rounded value has no noise of its own. `homogeneous` is rounded only in orthographic
-  /// projection.
+  /// Projects a vertex. The pixel coordinates of `sight` are rounded to the nearest multiple of 2^-32 pixel. So
+  /// vertices intended to be on pixel centres, or in the plane of the eye and a row or column of pixel centres, are
+  /// exactly there despite decimal noise in the camera. In perspective that unit is too fine far outside the image or
+  /// for very long lenses. There the unit is at least 2^(n-46) pixels, where 2^n is the power of two at or below the
+  /// largest of |x|, |y| and the pixels per unit of tangent (at most 2^22). From 2^46 pixels on, a vertex counts as in
+  /// the plane of the eye; the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger
+  /// of |X| and |Y|. Computed in long double, so that the rounded value has no noise of its own. `homogeneous` is
+  /// rounded only in orthographic projection.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
   /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.
@@ -41,11 +41,12 @@ class View {
   };
   [[nodiscard]] Ray ray(double x, double y) const;
 
-  /// World length of the ray through (x, y) per unit of planar depth: 1 in orthographic projection, larger towards the
-  /// image's edges in perspective.
+  /// Returns the world length of the ray through (x, y) per unit of planar depth: 1 in orthographic projection, larger
+  /// towards the image's edges in perspective.
   [[nodiscard]] double length_per_depth(double x, double y) const;
 
-  /// The visible range is strictly between these planar depths: the eye and the clipping range, if there is one.
+  /// Planar depths; the visible range is strictly between them. They are those of the eye and of the clipping range, if
+  /// there is one.
   [[nodiscard]] double nearest() const { return nearest_; }
   [[nodiscard]] double farthest() const { return farthest_; }
 

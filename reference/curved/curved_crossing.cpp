@@ -16,8 +16,8 @@ constexpr int most_pieces = 4000;
 constexpr double smallest_piece = 0x1p-26;  // of the face
 constexpr double edge_tolerance = 1e-9;     // of a piece
 
-/// Whether no crossing of a piece counts: all control points are on one side of the ray, by more than `rounding`, or
-/// the piece is a point, or a line along the ray, within that tolerance.
+/// Whether a piece has no crossing that counts: all control points are on one side of the ray, by more than `rounding`,
+/// or the piece is a point, or a line along the ray, within that tolerance.
 bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 4> low, high;
@@ -31,7 +31,7 @@ bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   return high[0] - low[0] < rounding && high[1] - low[1] < rounding;
 }
 
-/// The inverse of the map to the plane across the ray with these derivatives.
+/// The inverse of the derivatives of the map from a piece to the plane across the ray.
 struct Preconditioner {
   double xx, xy, yx, yy;
 
@@ -50,7 +50,7 @@ glm::dvec3 mean(const std::vector<glm::dvec3>& vectors) {
 }
 
 /// Whether the map of a piece to the plane across the ray is one-to-one: |I - A J| <= 1/4 in the maximum norm for all
-/// of its derivatives J, so that Newton's method also converges from its middle.
+/// of its derivatives J. This also ensures that Newton's method converges from the middle of the piece.
 bool one_to_one(const FacePiece& piece) {
   const PieceSlopes slope = slopes(piece);
   const Preconditioner across(mean(slope.along_a), mean(slope.along_b));
@@ -65,7 +65,7 @@ bool is_inside(bool triangle, glm::dvec2 place) {
   return (triangle ? place.x + place.y : std::max(place.x, place.y)) <= 1 + edge_tolerance;
 }
 
-/// Newton's method from a place of the whole face.
+/// Newton's method, starting at a place of the whole face.
 std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place) {
   constexpr int most_steps = 40, few_steps = 8;
   constexpr double last_step = 1e-10, short_step = 1e-6;
@@ -75,13 +75,13 @@ std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place)
     const double length = glm::length(step);
     if (!(length < 10)) return std::nullopt;
     place += step;
-    // Seen from very far away, rounding keeps steps from becoming that short.
+    // Seen from very far away, rounding prevents steps from becoming shorter than `last_step`.
     if (length < last_step || (n > few_steps && length < short_step)) return place;
   }
   return std::nullopt;
 }
 
-/// A place of the face in a piece's own coordinates.
+/// Converts a place of the face to a piece's own coordinates.
 glm::dvec2 within(const FacePiece& piece, glm::dvec2 place) {
   const Preconditioner into(glm::dvec3(piece.along_a, 0), glm::dvec3(piece.along_b, 0));
   return into(glm::dvec3(place - piece.origin, 0));

@@ -16,17 +16,17 @@ struct Crossing {
   glm::dvec3 place;  ///< in the cell's own coordinates
 };
 
-/// Appends every crossing of the ray with a face, unordered; a crossing at an edge or a corner of the face may be found
-/// twice, and so may one up to 1e-9 of the face beyond its edge.
+/// Appends every crossing of the ray with a face, unordered. A crossing at an edge or a corner of the face may be found
+/// twice, and a crossing outside the face may be found if it is within 1e-9 of the face's size of an edge.
 ///
 /// How      Pieces of the face whose control points are on one side of the ray (along eight directions) are dropped, as
-///          are those that are a point, or a line along the ray, up to rounding. The others are halved until the map of
-///          a piece to the plane across the ray is one-to-one (all control vectors of its derivatives near their mean);
-///          then Newton's method finds its only crossing, or that there is none. Only crossings within rounding of a
-///          tangent may be missed: see below.
-/// Limits   Pieces smaller than 2^-26 of the face are not halved further; pieces that remain after 4,000 are dropped:
-///          faces, or curves on them, along the ray. Two crossings closer to each other than such a piece bound a
-///          negligible length.
+///          are pieces that are a point, or a line along the ray, up to rounding. The others are halved until the map
+///          of a piece to the plane across the ray is one-to-one (all control vectors of its derivatives are close to
+///          their mean). Then Newton's method finds the only crossing of the piece, or that there is none. Only
+///          crossings within rounding of a tangent may be missed: see below.
+/// Limits   Pieces smaller than 2^-26 of the face are not halved further. After 4,000 pieces, the remaining ones are
+///          dropped: they are faces along the ray, or contain curves along the ray. Two crossings closer to each other
+///          than a piece of that size bound a negligible length.
 /// Source   Nishita, Sederberg, Kakimoto, "Ray Tracing Trimmed Rational Surface Patches", SIGGRAPH 1990, for the frame
 ///          and the hull; the one-to-one test is Krawczyk's, as in Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH
 ///          1985.

@@ -15,7 +15,7 @@ constexpr double most_optical_step = 0.5;
 constexpr double unseen_depth = 41.45;  // exp(-41.45) < 1e-18
 constexpr int most_light_halvings = 50;
 
-/// Integral over [u0, u1] with eight points.
+/// Integrates over [u0, u1] with eight points.
 template <class Function>
 double integral(double u0, double u1, const Function& function) {
   const double middle = (u0 + u1) / 2, half = (u1 - u0) / 2;

@@ -11,20 +11,20 @@
 
 namespace tessera::reference {
 
-/// The volume rendering integral along one ray, front to back, if the scalar is any smooth function in each segment:
-/// corresponds to Integral for linear scalars and GridIntegral for cubics.
+/// The volume rendering integral along one ray, front to back, if the scalar is any smooth function in each segment.
+/// Integral is the corresponding class for linear scalars, GridIntegral that for cubics.
 ///
-/// A piece is cut at the turning points of the scalar, and between these where it passes a knot of the transfer
-/// function (bisection down to neighbouring doubles). Within a cut, extinction and colour are polynomials of degree
-/// twelve at most; optical depth and colour are Gauss-Legendre quadrature with eight points, on steps of at most half a
-/// unit of optical depth. Error about 1e-12 in linear RGBA if the scalar is exact. It stops where T < 1e-18.
+/// A piece is cut at the turning points of the scalar, and between these where the scalar passes a knot of the transfer
+/// function (bisection down to neighbouring doubles). Between two cuts, extinction and colour are polynomials of degree
+/// twelve at most. Optical depth and colour are computed by Gauss-Legendre quadrature with eight points, on steps of at
+/// most half a unit of optical depth. The error is about 1e-12 in linear RGBA if the scalar is exact. Integration stops
+/// where T < 1e-18.
 class CurvedIntegral {
  public:
   /// The knots must outlive the integral.
   CurvedIntegral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
 
-  /// Adds the next piece. Scalars are relative to `origin`, so that they may be closer to a knot than doubles of their
-  /// magnitude can represent. `length_per_depth`: world units.
+  /// linear RGB, premultiplied
   void add(const SmoothScalar& scalar, double length_per_depth, double origin);
 
   [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
@@ -33,18 +33,18 @@ class CurvedIntegral {
   [[nodiscard]] double first_visible_depth() const { return first_visible_depth_; }
 
  private:
-  /// The transfer function between two knots: linear in the scalar.
+  /// The part of the transfer function between two knots, which is linear in the scalar.
   struct Ramp {
-    double value = 0;  ///< relative to `origin`; the rest is given at this value
+    double value = 0;  ///< relative to `origin`; the other members are given at this value
     double extinction = 0, extinction_slope = 0;
     std::array<double, 3> color{}, color_slope{};
   };
-  /// The ramp that contains `within`; a value on a step belongs to the step's upper knot.
+  /// Returns the ramp that contains `within`; a value on a step belongs to the step's upper knot.
   [[nodiscard]] Ramp ramp(double within, double origin) const;
 
   void add_cut(const SmoothScalar& scalar, double u0, double u1, double half_length, double origin);
-  /// Adds the light of [u0, u1], which is at optical depth `before` behind what was added. `half_length`: per unit of
-  /// u.
+  /// Adds the light of [u0, u1], which is at optical depth `before` behind the light added so far. `half_length` is the
+  /// length per unit of u.
   void add_light(const SmoothScalar& scalar, const Ramp& ramp, double u0, double u1, double half_length, double before,
                  int halvings);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double found_inside = 1e-12;    // in coordinates of the domain, which has size one
 constexpr double followed_inside = 1e-6;  // for places that are inside except for rounding in almost flat cells
 
-/// Number of lattice places, the nearest ones, tried for a point that no other method finds.
+/// Number of lattice places, the nearest ones, that are tried for a point if no other method finds its place.
 constexpr std::size_t most_tried = 8;
 
 std::optional<glm::dvec3> from_lattice(const CellOnRay& cell, double depth, BasisValues& room) {
@@ -28,7 +28,7 @@ std::optional<glm::dvec3> from_lattice(const CellOnRay& cell, double depth, Basi
   return std::nullopt;
 }
 
-/// The place of the point halfway between two crossings, if it is inside.
+/// Returns the place of the point halfway between two crossings; no value if the point is not inside.
 std::optional<glm::dvec3> middle_place(const CellOnRay& cell, const Crossing& front, const Crossing& back,
                                        BasisValues& room) {
   const double depth = front.depth + (back.depth - front.depth) / 2;

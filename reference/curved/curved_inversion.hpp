@@ -12,14 +12,14 @@
 
 namespace tessera::reference {
 
-/// The path of a ray inside a cell, in the cell's own coordinates: isoparametric inversion, warm-started from the
-/// nearest depth with a known place.
+/// The path of a ray inside a cell, in the cell's own coordinates. Places are found by isoparametric inversion, which
+/// starts at the nearest depth whose place is known.
 class InnerPath {
  public:
-  /// From two crossings, and a place between them.
+  /// Creates the path from two crossings, and a place between them.
   InnerPath(const CellOnRay& cell, const Crossing& front, const Crossing& middle, const Crossing& back);
 
-  /// Depths beyond the crossings are clamped to them.
+  /// Returns the place at a depth, which is clamped to the depths of the crossings.
   [[nodiscard]] glm::dvec3 place(double depth);
 
   [[nodiscard]] double front() const { return known_.begin()->first; }
@@ -28,8 +28,9 @@ class InnerPath {
   BasisValues& room() { return room_; }
 
  private:
-  /// Follows the ray from the place known at `from`; by halves if a single step does not end in the domain. In a folded
-  /// cell, where that may fail, it stays at the last place and soon gives up.
+  /// Follows the ray from the place known at depth `from` to depth `to`. If a single step does not end in the domain,
+  /// the way is halved. In a folded cell, where even that may fail, the function returns the last place after a few
+  /// attempts.
   [[nodiscard]] glm::dvec3 follow(double from, glm::dvec3 place, double to, int halvings);
 
   CellOnRay cell_;
@@ -38,9 +39,10 @@ class InnerPath {
   int failures_ = 0;
 };
 
-/// The intervals of a ray inside a cell, front to back: between two neighbouring crossings it is inside if the point in
-/// the middle has a place in the domain. Newton's method searches for that from between the crossings' places, from
-/// either of them along the ray, and from a lattice of places. `crossings` may be unordered and contain duplicates.
+/// Returns the intervals of a ray inside a cell, front to back. Between two neighbouring crossings the ray is inside if
+/// the point in the middle has a place in the domain. Newton's method searches for that place from the middle between
+/// the crossings' places, from either of them along the ray, and from a lattice of places. `crossings` may be unordered
+/// and contain duplicates.
 std::vector<InnerPath> inner_paths(const CellOnRay& cell, std::vector<Crossing> crossings);
 
 }  // namespace tessera::reference

@@ -8,20 +8,21 @@ namespace {
 
 using Places = std::vector<glm::dvec3>;
 
-/// The `order` - 1 places that divide the line from a to b evenly.
+/// Adds the `order` - 1 places that divide the line from a to b evenly.
 void add_between(const glm::dvec3& a, const glm::dvec3& b, int order, Places& places) {
   for (int i = 1; i < order; ++i)
     places.push_back((a * static_cast<double>(order - i) + b * static_cast<double>(i)) / static_cast<double>(order));
 }
 
-/// Places inside the triangle abc of `order`, as a smaller triangle: corners, edges, and recursively its inside.
+/// Adds the places inside the triangle abc of `order`. They form a smaller triangle: corners, edges, and recursively
+/// its inside.
 void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, int order, Places& places) {
   if (order < 3) return;
   const glm::dvec3 along_b = (b - a) / static_cast<double>(order), along_c = (c - a) / static_cast<double>(order);
   const glm::dvec3 p = a + along_b + along_c, q = b - along_b + (along_c - along_b),
                    r = c - along_c + (along_b - along_c);
   places.push_back(p);
-  if (order == 3) return;  // its only place
+  if (order == 3) return;  // the triangle has only this place
   places.push_back(q);
   places.push_back(r);
   add_between(p, q, order - 3, places);
@@ -30,7 +31,7 @@ void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
   add_triangle(p, q, r, order - 3, places);
 }
 
-/// A tet with corners `c`, the inside as a smaller tet.
+/// Adds a tet with corners `c`; the inside is a smaller tet.
 void add_tet(const std::array<glm::dvec3, 4>& c, int order, Places& places) {
   if (order == 0) {
     places.push_back(c[0]);
@@ -52,7 +53,7 @@ void add_tet(const std::array<glm::dvec3, 4>& c, int order, Places& places) {
   add_tet(inner, order - 4, places);
 }
 
-/// Places inside a parallelogram with corner a and sides ab and ad: rows along ab.
+/// Adds the places inside a parallelogram with corner a and sides ab and ad, in rows along ab.
 void add_quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& d, int order_ab, int order_ad,
               Places& places) {
   for (int j = 1; j < order_ad; ++j)
@@ -61,7 +62,7 @@ void add_quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& d, int
                        (d - a) * (static_cast<double>(j) / order_ad));
 }
 
-/// Places inside a wedge's cross section at height t: rows along r.
+/// Adds the places inside a wedge's cross section at height t, in rows along r.
 void add_section(double t, int order, Places& places) {
   for (int j = 1; j < order; ++j)
     for (int i = 1; i + j < order; ++i)
@@ -115,7 +116,7 @@ std::vector<glm::dvec3> lagrange_pyramid_nodes(int order) {
   constexpr std::array<std::array<std::size_t, 2>, 4> base{{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};
   Places places(c.begin(), c.end());
   for (const auto& [from, to] : base) add_between(c[from], c[to], order, places);
-  for (std::size_t i = 0; i < 4; ++i)  // they are vertical in the box
+  for (std::size_t i = 0; i < 4; ++i)  // these edges are vertical in the box
     for (int k = 1; k < order; ++k) places.emplace_back(c[i].x, c[i].y, static_cast<double>(k) / order);
   const auto add_layer = [&](int k) {
     const double t = static_cast<double>(k) / order;

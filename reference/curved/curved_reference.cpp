@@ -88,7 +88,8 @@ void CurvedReference::add_cell(const CurvedCells& cells, std::size_t index, std:
   cell.origin = cells.scalars[of_points ? nodes.front() : index];
   cell.control.resize(to_bernstein.rows);
   cell.field.resize(to_bernstein.rows);
-  // As differences to a node, so that a value common to all nodes is exact at all control points.
+  // Control points are computed from differences to a node, so that a value common to all nodes is exact at all of
+  // them.
   const glm::dvec3 from = cells.positions[nodes.front()];
   for (std::size_t row = 0; row < to_bernstein.rows; ++row) {
     glm::dvec3 sum(0);
@@ -115,13 +116,13 @@ void CurvedReference::bound(Cell& cell) const {
     cell.x_low = std::min(cell.x_low, h.x / h.z), cell.x_high = std::max(cell.x_high, h.x / h.z);
     cell.y_low = std::min(cell.y_low, h.y / h.z), cell.y_high = std::max(cell.y_high, h.y / h.z);
   }
-  if (!(deepest > 0)) {  // behind the eye
+  if (!(deepest > 0)) {  // the cell is behind the eye
     cell.x_low = cell.y_low = infinity;
     cell.x_high = cell.y_high = -infinity;
-  } else if (!(least_w > 1e-6 * largest_w)) {  // at or across the plane of the eye
+  } else if (!(least_w > 1e-6 * largest_w)) {  // the cell is at or across the plane of the eye
     cell.x_low = cell.y_low = -infinity;
     cell.x_high = cell.y_high = infinity;
-  } else {  // the quotients are rounded; the margin is wider than that
+  } else {  // the quotients are rounded; the margin is larger than the rounding
     const double x_margin = 1e-7 + 1e-9 * std::max(std::abs(cell.x_low), std::abs(cell.x_high));
     const double y_margin = 1e-7 + 1e-9 * std::max(std::abs(cell.y_low), std::abs(cell.y_high));
     cell.x_low -= x_margin, cell.x_high += x_margin;
@@ -132,7 +133,7 @@ void CurvedReference::bound(Cell& cell) const {
 CurvedReference::Frame CurvedReference::frame(double x, double y) const {
   Frame frame{view_.ray(x, y), glm::dvec3(0), glm::dvec3(0), view_.length_per_depth(x, y)};
   const glm::dvec3 along = glm::normalize(frame.ray.step), size = glm::abs(along);
-  glm::dvec3 other(0);  // the axis with the smallest component along the ray
+  glm::dvec3 other(0);  // along the axis with the smallest component of the ray
   other[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1;
   frame.across_x = glm::normalize(glm::cross(along, other));
   frame.across_y = glm::cross(along, frame.across_x);

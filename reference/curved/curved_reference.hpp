@@ -20,9 +20,9 @@
 
 namespace tessera::reference {
 
-/// Cells in VTK's form, of any order, with one scalar.
+/// Cells in VTK's form, of any order, with one scalar field.
 ///
-/// Shape   cell c has VTK's type types[c] and the nodes connectivity[offsets[c]] up to connectivity[offsets[c + 1]].
+/// Shape   Cell c has VTK's type types[c] and the nodes connectivity[offsets[c]] up to connectivity[offsets[c + 1]].
 ///         `degrees` are VTK's array HigherOrderDegrees: one entry per cell, or empty. Scalars: one per position or one
 ///         per cell.
 struct CurvedCells {
@@ -42,33 +42,34 @@ struct CurvedSegment {
   std::size_t cell;
 };
 
-/// The slow, exact renderer of curved cells: every ray against the true faces of every cell whose box it meets, and the
-/// field by isoparametric inversion along it. Does not subdivide the mesh and shares no code with the fast renderer
-/// except the plain values of scene/.
+/// The slow, exact renderer of curved cells. It intersects every ray with the true faces of every cell whose box it
+/// meets, and evaluates the field by isoparametric inversion along the ray. It does not subdivide the mesh, and shares
+/// no code with the fast renderer except the plain values of scene/.
 ///
 /// Cells    Point data: geometry and field by the type's shape functions (curved_shapes.hpp). So linear hexahedra,
 ///          wedges, pyramids and voxels are trilinear here, with curved faces and a field that is not linear, while
 ///          `Reference` is given tets. Cell data: constant in a cell. Cells without a volume are skipped.
-/// Faces    intersections with the ray: curved_crossing.hpp. Between crossings: curved_inversion.hpp.
-/// Light    the field as polynomials along the ray (smooth_scalar.hpp), integrated by curved_integral.hpp.
+/// Faces    curved_crossing.hpp intersects them with the ray; curved_inversion.hpp follows the ray between crossings.
+/// Light    is computed from polynomials of the field along the ray (smooth_scalar.hpp) by curved_integral.hpp.
 /// Order    (front, back, cell). Cells must not overlap or be folded: where the map from a cell's own coordinates to
 ///          space is not one-to-one, the result is finite but undefined, and may take up to a second.
-/// Ties     no rule: a ray exactly through an edge or a node, or along a face, may miss a segment, or count a segment
+/// Ties     have no rule: a ray exactly through an edge or a node, or along a face, may miss a segment, or count a
+/// segment
 ///          of negligible length twice. Rays at a small distance are correct.
 /// Error    about 1e-12 in linear RGBA for cells of moderate shape; that of inversion grows as cells become flat.
-/// Cost     20 to 100 microseconds per cell met, more if the ray nearly touches it.
+/// Cost     20 to 100 microseconds per cell that a ray meets, more if the ray nearly touches the cell.
 class CurvedReference final : public RayReference {
  public:
-  /// The cells are copied. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, a
-  /// cell that does not match its type, an invalid index or array length, or numbers that are not finite.
+  /// Copies the cells. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, a cell
+  /// that does not match its type, an invalid index or array length, or numbers that are not finite.
   CurvedReference(const CurvedCells& cells, const scene::Camera& camera, scene::ImageSize size,
                   const scene::TransferFunction& transfer_function,
                   scene::Emission emission = scene::Emission::absorption);
 
-  /// The segments of the ray through pixel coordinates (x, y), front to back.
+  /// Returns the segments of the ray through pixel coordinates (x, y), front to back.
   [[nodiscard]] std::vector<CurvedSegment> segments(double x, double y) const;
 
-  /// `length` is the total of all segments, `segments` their number.
+  /// In the result, `length` is the total length of all segments, `segments` their number.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
   [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
@@ -96,9 +97,9 @@ class CurvedReference final : public RayReference {
   void add_cell(const CurvedCells& cells, std::size_t index, std::size_t shape);
   void bound(Cell& cell) const;
   [[nodiscard]] Frame frame(double x, double y) const;
-  /// The control points of a cell in a ray's frame; `control` is their storage.
+  /// Returns the control points of a cell in a ray's frame; they are stored in `control`.
   [[nodiscard]] CellOnRay on_ray(const Cell& cell, const Frame& frame, std::vector<glm::dvec3>& control) const;
-  /// Sorted. `controls` is storage for the cells' control points.
+  /// Returns the cells that the ray meets, sorted. `controls` stores the cells' control points.
   [[nodiscard]] std::vector<Met> met(double x, double y, std::vector<std::vector<glm::dvec3>>& controls) const;
 
   scene::ImageSize size_;

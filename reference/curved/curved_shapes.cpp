@@ -30,9 +30,9 @@ Function corner_monomial(int i, int j, int k) {
   return [=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * power(p.z, k); };
 }
 
-/// Shape functions that span the whole basis.
+/// Returns the shape whose functions span the whole basis.
 CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
-  // Nodes that are the lattice in another order.
+  // The nodes are the lattice points in another order.
   const std::vector<glm::dvec3> lattice = basis.lattice();
   const Matrix from_lattice = basis.from_lattice();
   CellShape shape{basis, std::move(nodes), Matrix(basis.size(), basis.size()), basis.faces()};
@@ -49,7 +49,7 @@ CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
   return shape;
 }
 
-/// Shape functions that span `space`, which has as many functions as nodes, within the basis.
+/// Returns the shape whose functions span `space`, which has as many functions as nodes, within the basis.
 CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, const std::vector<Function>& space) {
   const auto values_at = [&](const std::vector<glm::dvec3>& places) {
     Matrix values(places.size(), space.size());
@@ -61,7 +61,7 @@ CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, co
   return {basis, std::move(nodes), product(basis.from_lattice(), at_lattice), basis.faces()};
 }
 
-/// The nodes are the control points.
+/// Returns a shape whose nodes are the control points.
 CellShape bezier(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
   CellShape shape = full(basis, std::move(nodes));
   const std::vector<glm::dvec3> lattice = basis.lattice();
@@ -78,7 +78,7 @@ std::vector<glm::dvec3> first(std::size_t count, std::vector<glm::dvec3> places)
   return places;
 }
 
-/// Eight-node serendipity in (r, s), with powers of t up to `most_t`.
+/// Adds the eight-node serendipity functions in (r, s), times powers of t up to `most_t`.
 void add_serendipity(int most_t, std::vector<Function>& space) {
   constexpr std::array<std::array<int, 2>, 8> exponents{
       {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}, {2, 1}, {1, 2}}};
@@ -86,8 +86,8 @@ void add_serendipity(int most_t, std::vector<Function>& space) {
     for (const auto& e : exponents) space.push_back(monomial(e[0], e[1], k));
 }
 
-/// With 20 nodes: the monomials of degree two at most, not counting variables to the first power (Arnold, Awanou, "The
-/// Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
+/// The hexahedron with 20 nodes: the monomials of degree two at most, not counting variables to the first power
+/// (Arnold, Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
 CellShape quadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(1, space);
@@ -95,14 +95,14 @@ CellShape quadratic_hexahedron() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(20, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// With 24 nodes: serendipity across, quadratic along.
+/// The hexahedron with 24 nodes: serendipity across, quadratic along.
 CellShape biquadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(2, space);
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(24, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// With 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
+/// The wedge with 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
 CellShape quadratic_wedge() {
   std::vector<Function> space;
   for (int k = 0; k < 2; ++k)
@@ -126,8 +126,8 @@ Function towards_apex(std::function<double(double x, double y, double w)> f) {
   return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
 }
 
-/// Functions of both quadratic pyramids: quadratic on every edge, and besides xy complete to second degree, except that
-/// x^2 + y^2 is rational.
+/// Returns the functions that both quadratic pyramids have. They are quadratic on every edge, and include all
+/// polynomials of second degree, with xy, except that x^2 + y^2 is rational.
 std::vector<Function> quadratic_pyramid_space() {
   std::vector<Function> space;
   for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
@@ -141,8 +141,8 @@ std::vector<Function> quadratic_pyramid_space() {
   return space;
 }
 
-/// With 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face collapsed, corrected to be
-/// quadratic on the triangles (Felippa, "Advanced Finite Element Methods", chapter on pyramids).
+/// The pyramid with 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face collapsed, corrected to
+/// be quadratic on the triangles (Felippa, "Advanced Finite Element Methods", chapter on pyramids).
 CellShape quadratic_pyramid() {
   std::vector<Function> space = quadratic_pyramid_space();
   space.push_back(towards_apex([](double x, double y, double w) { return (x * x - y * y) * w * w; }));
@@ -153,7 +153,7 @@ CellShape quadratic_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(13, pyramid_nodes()), space);
 }
 
-/// With 19 nodes: also bubbles on faces and inside.
+/// The pyramid with 19 nodes, which also has bubbles on faces and inside.
 CellShape triquadratic_pyramid() {
   std::vector<Function> space = quadratic_pyramid_space();
   space.push_back(towards_apex([](double x, double y, double w) { return x * (1 - y * y) * w * w * w; }));
@@ -180,23 +180,23 @@ CellShape lagrange_pyramid(int order) {
   return spanned(BernsteinBasis(Domain::box, {order, order, order}), lagrange_pyramid_nodes(order), space);
 }
 
-/// Places in the middle of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
+/// Returns the middles of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
 std::vector<glm::dvec3> tet_middles() {
   constexpr double third = 1.0 / 3;
   return {{third, third, 0}, {third, 0, third}, {third, third, third}, {0, third, third}, glm::dvec3(0.25)};
 }
 
-/// All polynomials on the tet up to a degree.
+/// Adds all polynomials on the tet up to a degree.
 void add_complete(int degree, std::vector<Function>& space) {
   for (int k = 0; k <= degree; ++k)
     for (int j = 0; j + k <= degree; ++j)
       for (int i = 0; i + j + k <= degree; ++i) space.push_back(corner_monomial(i, j, k));
 }
 
-/// The fourth barycentric coordinate, 1 - r - s - t.
+/// Returns the fourth barycentric coordinate, 1 - r - s - t.
 double fourth(const glm::dvec3& p) { return 1 - p.x - p.y - p.z; }
 
-/// Cubic bubbles of the tet's faces.
+/// Adds the cubic bubbles of the tet's faces.
 void add_face_bubbles(std::vector<Function>& space) {
   space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z; });
   space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * fourth(p); });
@@ -308,7 +308,7 @@ CellShape enriched_wedge() {
   return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
 }
 
-/// Number of nodes of the types for which it is fixed.
+/// Returns the number of nodes of types for which it is fixed.
 std::size_t nodes_of(CellType type) {
   switch (type) {
     case CellType::tetra:

@@ -19,14 +19,15 @@ struct Matrix {
   double operator()(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-/// a b; `a` has as many columns as `b` has rows.
+/// Returns the product a b; `a` must have as many columns as `b` has rows.
 Matrix product(const Matrix& a, const Matrix& b);
 
-/// The inverse of a non-singular square matrix: Gauss-Jordan with pivots, in long double, so that rounding the result
-/// is the largest error at the condition numbers of interpolation up to degree ten.
+/// Returns the inverse of a non-singular square matrix by Gauss-Jordan elimination with pivots. Computed in long
+/// double, so that at the condition numbers of interpolation up to degree ten the largest error is the rounding of the
+/// result.
 Matrix inverse(const Matrix& matrix);
 
-/// The Kronecker product: index (i, j) is i + j * rows of `fast`, and likewise for columns.
+/// Returns the Kronecker product: the row (i, j) is i + j * rows of `fast`, and likewise for columns.
 Matrix kronecker(const Matrix& slow, const Matrix& fast);
 
 }  // namespace tessera::reference

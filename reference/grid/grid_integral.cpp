@@ -14,17 +14,17 @@ namespace {
 constexpr double largest_optical_step = 0.5;
 constexpr double depth_of_nothing = 41.45;  // exp(-41.45) < 1e-18
 
-/// Integral of a cubic from u0 to u1, expanded about the middle so that short pieces do not cancel.
+/// Integrates a cubic from u0 to u1. The cubic is expanded about the middle to avoid cancellation in short pieces.
 double area(const Cubic& p, double u0, double u1) {
   const double m = (u0 + u1) / 2, h = (u1 - u0) / 2;
   const double curvature = p.c[2] + 3 * p.c[3] * m;  // half the second derivative
   return 2 * h * (p.at(m) + curvature * h * h / 3);
 }
 
-/// a + b * p.
+/// Returns a + b * p.
 Cubic linear_of(double a, double b, const Cubic& p) { return {{a + b * p.c[0], b * p.c[1], b * p.c[2], b * p.c[3]}}; }
 
-/// Turning points of the cubic in (0, 1).
+/// Returns the turning points of the cubic in (0, 1).
 std::vector<double> turning_points(const Cubic& p) {
   const double a = 3 * p.c[3], b = 2 * p.c[2], c = p.c[1];
   std::vector<double> points;
@@ -33,7 +33,7 @@ std::vector<double> turning_points(const Cubic& p) {
   };
   const double discriminant = b * b - 4 * a * c;
   if (!(discriminant > 0)) return points;
-  // The form without cancellation; a may be zero.
+  // The form of the solution without cancellation; a may be zero.
   const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
   if (a != 0) keep(q / a);
   if (q != 0) keep(c / q);
@@ -75,7 +75,7 @@ void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, doub
   while (above < knots_.size() && knots_[above].value - origin <= within) ++above;
   const scene::Knot& low = knots_[above == 0 ? 0 : above - 1];
   const scene::Knot& high = knots_[above == knots_.size() ? above - 1 : above];
-  // Computed as a difference: no cancellation where knots are close but values are large.
+  // Computed as a difference, so that there is no cancellation where knots are close but values are large.
   Cubic from_low = scalar;
   from_low.c[0] -= low.value - origin;
   const auto along = [&](double at_low, double at_high) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double plane_tolerance = 1e-9;  // voxels
 
-/// p + (q - p) * (a + b u); p and q have degree two at most.
+/// Returns p + (q - p) * (a + b u); p and q have degree two at most.
 Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
   Cubic result;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -71,7 +71,7 @@ GridIntegral::Light GridReference::light(const Voxel& voxel, const glm::dvec3& p
   const glm::dvec3 normal = glm::normalize(glm::transpose(to_local_) * gradient), to_eye = -glm::normalize(step_world);
   const glm::dvec3 half = to_light_ + to_eye;
   const double n_l = std::abs(glm::dot(normal, to_light_));
-  // A light exactly behind has no halfway vector.
+  // If the light is exactly behind, there is no halfway vector.
   const double n_h = glm::length(half) > nothing ? std::abs(glm::dot(normal, glm::normalize(half))) : 0;
   return {shading_->ambient + shading_->diffuse * n_l, shading_->specular * std::pow(n_h, shading_->shininess)};
 }
@@ -98,7 +98,7 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
                view_.length_per_depth(x, y),
                false,
                false};
-  double span = 0;  // largest planar depth in the volume: relevant if parallel planes are not crossed
+  double span = 0;  // largest planar depth in the volume, which determines whether parallel planes are crossed
   const scene::Box box = scene::bounds(g);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p(corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
@@ -111,7 +111,7 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
     const double voxel = (high - low) / static_cast<double>(g.points[a] - 1);
     if (std::abs(ray.step[axis]) * span < plane_tolerance * voxel) {
       const double local = ray.origin[axis];
-      // The direction in which an infinitesimal shift of the ray moves it along this axis.
+      // The direction along this axis in which an infinitesimal shift moves the ray.
       const auto moved = [&](double dx, double dy) {
         const View::Ray other = view_.ray(x + dx, y + dy);
         return (to_local_ * (other.origin - world.origin) + (to_local_ * (other.step - world.step)) * span)[axis];
@@ -124,7 +124,7 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
         ray.end = ray.begin;
         continue;
       }
-      // A ray in a plane up to rounding gets the plane's values.
+      // A ray that is in a plane up to rounding gets the plane's coordinate.
       ray.step[axis] = 0;
       for (const std::int64_t n : {ray.in_plane[a], ray.in_plane[a] + 1})
         if (std::abs(local - g.lattice(a, n)) < plane_tolerance * voxel) ray.origin[axis] = g.lattice(a, n);
@@ -186,7 +186,8 @@ bool GridReference::read_voxel(const LocalRay& ray, const glm::dvec3& middle, Vo
 
 void GridReference::add_part(const LocalRay& ray, const Voxel& voxel, double z0, double z1,
                              GridIntegral& integral) const {
-  // As differences: voxel values that differ only in the last places keep all their digits.
+  // The cubic is computed from differences, so that voxel values that differ only in the last places keep all their
+  // digits.
   const double origin = voxel.values[0];
   std::array<Cubic, 8> field;
   GridIntegral::Light lit;

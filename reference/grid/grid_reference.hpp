@@ -19,8 +19,8 @@
 
 namespace tessera::reference {
 
-/// The slow, exact renderer of regular and rectilinear grids: every ray against every voxel along it, in double
-/// precision. It has no acceleration structure, does not skip invisible voxels, and shares no code with the fast
+/// The slow, exact renderer of regular and rectilinear grids: every ray is intersected with every voxel along it, in
+/// double precision. It has no acceleration structure, does not skip invisible voxels, and shares no code with the fast
 /// renderer except the plain values of scene/.
 ///
 /// Field    Point data: trilinear in each voxel, hence a cubic along the ray (grid_integral.hpp). Cell data: constant
@@ -28,24 +28,26 @@ namespace tessera::reference {
 /// Domain   the box between the first and last lattice points.
 /// Ties     a ray in a plane of the lattice (to 1e-9 of a voxel) belongs to the voxels that an infinitesimal shift of
 ///          the ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. The same applies at the volume's boundary.
-/// Shading  as defined by scene/shading.hpp: a segment is between two crossings of lattice planes, the eye, the
-///          clipping planes and surfaces. A gradient below 1e-12 of the voxel's samples is zero.
-/// Surfaces of point data: crossed in each voxel as in grid_surface.hpp, lit by the trilinear field's gradient. The
-///          sides of a gap are not surfaces.
+/// Shading  as defined by scene/shading.hpp. A segment is between two crossings of lattice planes, the eye, the
+///          clipping planes and surfaces. A gradient below 1e-12 of the voxel's samples counts as zero.
+/// Surfaces of point data are intersected in each voxel as in grid_surface.hpp, and lit by the gradient of the
+/// trilinear
+///          field. The sides of a gap are not surfaces.
 /// Error    about 1e-12 in linear RGBA.
-/// Cost     a microsecond or two per voxel met. It stores no samples: volumes larger than memory can be checked.
+/// Cost     a microsecond or two per voxel along a ray. It stores no samples: volumes larger than memory can be
+/// checked.
 class GridReference final : public RayReference, public LayerReference {
  public:
-  /// The source must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, or an empty
-  /// transfer function, or for shading of light that does not depend on extinction. Only the parts of rays inside all
-  /// half-spaces count (kept_interval.hpp).
+  /// The source must outlive the reference. Only the parts of rays inside all half-spaces count (kept_interval.hpp).
+  /// Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, or shading of light that
+  /// does not depend on extinction.
   GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
                 const scene::TransferFunction& transfer_function,
                 scene::Emission emission = scene::Emission::absorption,
                 const std::optional<scene::Shading>& shading = std::nullopt,
                 std::span<const scene::HalfSpace> kept = {}, const Surfaces& surfaces = {});
 
-  /// `length` and `segments` count only what is not blank.
+  /// In the result, `length` and `segments` count only parts that are not blank.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
   [[nodiscard]] std::vector<Pixel> layers(double x, double y, const Peel& peel) const override;
   [[nodiscard]] std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
@@ -57,29 +59,30 @@ class GridReference final : public RayReference, public LayerReference {
   struct LocalRay {
     glm::dvec3 origin, step;
     std::array<std::int64_t, 3> in_plane;  ///< the voxel along an axis whose planes are parallel to the ray, else -1
-    double begin, end;                     ///< planar depths in the volume and in view; empty if begin >= end
+    double begin, end;                     ///< planar depths inside the volume and view; empty if begin >= end
     double length_per_depth;
-    bool begin_cut, end_cut;  ///< whether a clipping plane is there
+    bool begin_cut, end_cut;  ///< whether a clipping plane is at the beginning and end
   };
   /// A voxel that a ray meets.
   struct Voxel {
     glm::dvec3 low, side;          ///< local
-    std::array<double, 8> values;  ///< at its corners, or the voxel's single value
+    std::array<double, 8> values;  ///< values at the voxel's corners, or its single value
     bool constant;
     [[nodiscard]] glm::dvec3 place(const glm::dvec3& local) const { return (local - low) / side; }
   };
   [[nodiscard]] LocalRay local_ray(double x, double y) const;
-  /// All depths at which a ray begins, ends or passes a plane of the lattice, each computed from the plane alone.
+  /// Returns all depths at which a ray begins, ends or passes a plane of the lattice. Each depth is computed from its
+  /// plane alone.
   [[nodiscard]] std::vector<double> plane_depths(const LocalRay& ray) const;
-  /// The voxel that contains the middle of a segment. False if it is a gap.
+  /// Reads the voxel that contains the middle of a segment. Returns false if the voxel is a gap.
   [[nodiscard]] bool read_voxel(const LocalRay& ray, const glm::dvec3& middle, Voxel& voxel) const;
-  /// Integrates the whole ray; counts length and segments in `pixel`.
+  /// Integrates the whole ray, and counts length and segments in `pixel`.
   void integrate(double x, double y, GridIntegral& integral, Pixel& pixel) const;
   void add_stretch(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;
   /// Adds the part of a segment between two surfaces.
   void add_part(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;
-  /// The light at a place of a voxel, 0 to 1 along each axis. `step_world`: along the ray, away from the eye, any
-  /// length.
+  /// Returns the light at a place of a voxel, 0 to 1 along each axis. `step_world` is a vector along the ray, away from
+  /// the eye, of any length.
   [[nodiscard]] GridIntegral::Light light(const Voxel& voxel, const glm::dvec3& place,
                                           const glm::dvec3& step_world) const;
   [[nodiscard]] std::int64_t voxel_along(std::size_t axis, double local) const;
@@ -92,7 +95,7 @@ class GridReference final : public RayReference, public LayerReference {
   View view_;
   glm::dmat3 to_local_;
   std::optional<scene::Shading> shading_;
-  glm::dvec3 to_light_{0};  ///< world, unit length
+  glm::dvec3 to_light_{0};  ///< direction to the light in the world, unit length
   std::vector<SurfaceOfValue> surfaces_;
   SurfaceLight surface_light_;
 };

@@ -39,11 +39,12 @@ Place between(const Place& front, const Place& back, Real u) {
   return place;
 }
 
-/// 0, the turning points of the field along the segment in (0, 1), and 1: from the cubic through four of its values.
+/// Returns 0, the turning points of the field along the segment in (0, 1), and 1. They are computed from the cubic
+/// through four values of the field.
 std::vector<Real> turns(const Corners& v, const Place& front, const Place& back) {
   std::array<Real, 4> f;
   for (std::size_t n = 0; n < 4; ++n) f[n] = field_at(v, between(front, back, static_cast<Real>(n) / 3));
-  // As a function of t = 3 u, by Newton's forward differences.
+  // The cubic as a function of t = 3 u, by Newton's forward differences.
   const Real d1 = f[1] - f[0], d2 = f[2] - 2 * f[1] + f[0], d3 = f[3] - 3 * f[2] + 3 * f[1] - f[0];
   const Real c3 = d3 / 6, c2 = d2 / 2 - d3 / 2, c1 = d1 - d2 / 2 + d3 / 3;
   std::vector<Real> ends{0};

@@ -11,28 +11,29 @@
 namespace tessera::reference {
 
 /// The segment of a ray in a voxel of point data. `corner` a + 2 b + 4 c is the value at the voxel's corner (a, b, c);
-/// places in it are 0 to 1 along each axis.
+/// coordinates of places in the voxel are 0 to 1 along each axis.
 struct VoxelStretch {
   std::array<double, 8> corner;
   glm::dvec3 front, back;                    ///< places where the segment begins and ends
-  bool front_cut = false, back_cut = false;  ///< whether a clipping plane is there
+  bool front_cut = false, back_cut = false;  ///< whether a clipping plane is at the front and back
 };
 
-/// A crossing of a segment with a surface: its fraction of the segment, in order.
+/// A crossing of a segment with a surface: the fraction of the segment in front of it. Crossings are in order.
 struct GridCrossing {
   double part;
   glm::dvec3 place;
   const SurfaceOfValue* surface;
 };
 
-/// All crossings of a segment with surfaces, which are ascending by value. The field is trilinear, so a cubic along the
-/// ray; between its ends and its turning points, a surface is crossed if the field at one of them is below its value
-/// and at the other is not. Values are relative to the surface's, in long double. A place within 1e-11 of a voxel's
-/// side counts as on it: so voxels that share a side have the same values there, and those of the samples at corners.
-/// An end that is `cut` has a surface's value if it differs by less than a part in 1e10, as in surface_crossings().
+/// Returns all crossings of a segment with surfaces, which are ascending by value. The field is trilinear, so it is a
+/// cubic along the ray. Between two neighbouring ends or turning points of the cubic, a surface is crossed if the field
+/// is below the surface's value at one of them, and not below it at the other. Values are relative to the surface's
+/// value, in long double. A place within 1e-11 of a voxel's side counts as on the side, so that voxels that share a
+/// side have the same values there, and the values at corners are those of the samples. The field at an end that is
+/// `cut` counts as equal to the surface's value if it differs by less than a part in 1e10, as in surface_crossings().
 std::vector<GridCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces, const VoxelStretch& stretch);
 
-/// The field's derivatives along the voxel's axes at a place in it, per voxel.
+/// Returns the field's derivatives along the axes of a voxel at a place in the voxel, per side of the voxel.
 glm::dvec3 slopes(const std::array<double, 8>& corner, const glm::dvec3& place);
 
 }  // namespace tessera::reference

@@ -20,12 +20,13 @@ namespace {
 
 constexpr std::int64_t side = 8, most_blocks = 8192;
 constexpr double nothing = 1e-12;
-/// Marked pixels of a voxel: one in `pixels_per_mark`, at most `most_marks`. Boundaries may be small.
+/// One pixel in `pixels_per_mark` of a voxel is marked, at most `most_marks`. Boundaries may be small and have more
+/// marks.
 constexpr double pixels_per_mark = 16, border_pixels_per_mark = 4, most_marks = 16;
 /// Distance along a ray, in voxel sizes, behind the first visible sample within which nothing counts as hidden.
 constexpr double skin = 4;
 
-/// Range of some samples that are not blank, and whether there are any.
+/// Range of the samples that are not blank, and whether there are any.
 struct Values {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool blank = false;
@@ -67,7 +68,7 @@ class GridSuspects {
     const bool cell_data = geometry_.association == scene::Association::cell;
     scene::SampleBox box;
     for (std::size_t a = 0; a < 3; ++a) {
-      // For cell data, includes neighbours on one side: a boundary is between two voxels.
+      // Cell data include neighbours on one side, because a boundary is between two voxels.
       box.low[a] = place[a] * side;
       box.high[a] = std::min(samples[a], box.low[a] + side + 1);
     }
@@ -96,7 +97,7 @@ class GridSuspects {
         if ((n >> a & 1) == 0) raise_ties(corner(n), corner(n | 1 << a), image_.size, edge_, found_.tie);
     const glm::dmat3 to_local = scene::world_to_local(geometry_);
     const double far = farthest();
-    // All orthographic rays have one direction, usually not along a plane.
+    // All orthographic rays have one direction, which is usually not along a plane.
     const glm::dvec3 direction = to_local * view_.ray(0, 0).step;
     const auto strays = [&](std::size_t a) { return std::abs(direction[static_cast<int>(a)]) * far / voxel(a); };
     if (!view_.perspective() && std::min({strays(0), strays(1), strays(2)}) > tying_distance) return;
@@ -137,7 +138,7 @@ class GridSuspects {
     return far;
   }
 
-  /// For a ray along the planes of an axis, close to one of them.
+  /// Raises the scores of a ray along the planes of an axis, close to one of the planes.
   void raise_planes(int x, int y, std::size_t a, double origin, double step, double far) {
     const double along = std::abs(step) * far / voxel(a);  // distance, in voxels, between the ray and the plane
     if (!(along < tying_distance)) return;

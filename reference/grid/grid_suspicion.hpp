@@ -12,17 +12,17 @@ namespace tessera::reference {
 
 /// Where a regular or rectilinear grid is difficult to render correctly.
 ///
-/// Noise   the field is assumed to be rounded to 2^-23 of its range: 32-bit floats.
-/// Hidden  parts far behind the first visible sample of an opaque pixel count little.
-/// Cost    a pass over the samples, in blocks of 8^3 voxels; if there are more than 8,192 blocks, over that many,
+/// Noise   the field is assumed to be rounded to 2^-23 of its range, as in 32-bit floats.
+/// Hidden  parts far behind the first visible sample of an opaque pixel have low scores.
+/// Cost    a pass over the samples, in blocks of 8^3 voxels; if there are more than 8,192 blocks, only 8,192 of them,
 ///         evenly distributed.
 struct GridSuspicion {
-  SuspicionMap step;    ///< possible error of light by the field's rounding in one voxel, at some of its pixels
-  SuspicionMap border;  ///< light of voxels that have blank and other samples, or are adjacent to blank ones
-  SuspicionMap tie;     ///< nearness of the ray to a plane of the lattice or to an edge of the volume, times contrast
+  SuspicionMap step;    ///< possible error of light from rounding of the field in a voxel, at some of its pixels
+  SuspicionMap border;  ///< light of voxels that have blank and other samples, or are next to blank voxels
+  SuspicionMap tie;     ///< nearness of the ray to a lattice plane or an edge of the volume, times contrast
 };
 
-/// `edge`: the image's ImageSuspicion::edge. `threads` 0: all cores.
+/// `edge` is the image's ImageSuspicion::edge. `threads` 0: all cores.
 GridSuspicion suspect(const scene::SampleSource& source, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads = 0);

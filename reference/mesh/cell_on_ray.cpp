@@ -41,7 +41,7 @@ glm::dvec3 change_of_place(const CellPoint& point, const glm::dvec3& wanted) {
 std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm::dvec3 start, BasisValues& room) {
   constexpr int most_steps = 30, few_steps = 8;
   constexpr double far_away = 10;      // in coordinates of the domain, which has size one
-  constexpr double last_step = 1e-10;  // the next step would be its square, below rounding
+  constexpr double last_step = 1e-10;  // the next step would be the square of this, below rounding
   constexpr double rounding = 1e-13;   // relative to the cell's size
   for (int n = 0; n < most_steps; ++n) {
     const CellPoint point = point_of(cell, start, room);
@@ -51,7 +51,7 @@ std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm:
     if (!std::isfinite(length)) return std::nullopt;
     start += step;
     if (!(glm::length(start) < far_away)) return std::nullopt;
-    // In an almost flat cell, steps may never become that short.
+    // In an almost flat cell, steps may never become shorter than `last_step`.
     if (length < last_step || (n > few_steps && glm::length(missing) < rounding * cell.size)) return start;
   }
   return std::nullopt;

@@ -10,17 +10,19 @@
 
 namespace tessera::reference {
 
-/// A cell in the frame of one ray: x and y are coordinates along two unit vectors across the ray, z is the planar depth
-/// of the nearest place on the ray. So the ray is x = y = 0. Valid only during the lifetime of what it refers to.
+/// A cell in the frame of one ray. x and y are coordinates along two unit vectors across the ray, z is the planar depth
+/// of the nearest place on the ray. So the ray is x = y = 0. Valid only during the lifetime of the objects to which it
+/// refers.
 struct CellOnRay {
   const BernsteinBasis* basis = nullptr;
-  std::span<const glm::dvec3> control;  ///< control points in that frame
+  std::span<const glm::dvec3> control;  ///< control points in the ray's frame
   std::span<const double> field;        ///< control values; empty if the field is constant
-  double size = 0;      ///< longest side of the box of `control`; larger if the eye is so far away that rounding is
+  double size = 0;      ///< longest side of the box of `control`, or more if a distant eye makes rounding larger
   double rounding = 1;  ///< rounding of places relative to a nearby eye: about the distance in sizes, divided by four
 };
 
-/// The position in the ray's frame of a place in the cell's own coordinates, and its derivatives.
+/// The position of a place of the cell in the ray's frame, and its derivatives with respect to the cell's own
+/// coordinates.
 struct CellPoint {
   glm::dvec3 at, along_r, along_s, along_t;
 };
@@ -35,14 +37,14 @@ struct BasisValues {
 
 CellPoint point_of(const CellOnRay& cell, const glm::dvec3& place, BasisValues& room);
 
-/// The field there; the cell's field must not be empty.
+/// Returns the field at a place; the cell's field must not be empty.
 double field_of(const CellOnRay& cell, const glm::dvec3& place, BasisValues& room);
 
-/// The change of place that moves the point by `wanted`, to first order; not finite where the cell is flat.
+/// Returns the change of place that moves the point by `wanted`, to first order. Not finite where the cell is flat.
 glm::dvec3 change_of_place(const CellPoint& point, const glm::dvec3& wanted);
 
-/// The place whose point is on the ray at `depth`, by Newton's method from `start`. It may be outside the domain. No
-/// value if the method does not converge.
+/// Returns the place whose point is on the ray at `depth`, found by Newton's method from `start`. The place may be
+/// outside the domain. No value if the method does not converge.
 std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm::dvec3 start, BasisValues& room);
 
 }  // namespace tessera::reference

@@ -18,7 +18,7 @@ void raise_ties(const glm::dvec3& a, const glm::dvec3& b, scene::ImageSize size,
   const glm::dvec3 p = cut(a, b), q = cut(b, a);
   std::array<double, 2> from{p.x / p.z - 0.5, p.y / p.z - 0.5}, to{q.x / q.z - 0.5, q.y / q.z - 0.5};
   const std::array<int, 2> sides{size.width, size.height};
-  // Steps along the longer axis of the edge, from one row of centres to the next.
+  // The walk steps along the longer axis of the edge, from one row of centres to the next.
   const std::size_t u = std::abs(to[0] - from[0]) > std::abs(to[1] - from[1]) ? 0 : 1, v = 1 - u;
   if (from[u] > to[u]) std::swap(from, to);
   const double first = std::max(0.0, std::ceil(from[u] - tying_distance));

@@ -9,16 +9,16 @@
 
 namespace tessera::reference {
 
-/// Distance in pixels of a line of sight to an edge that counts as a tie: within it an image may show either side
-/// (judge.hpp).
+/// Largest distance in pixels between a line of sight and an edge that counts as a tie. Within this distance an image
+/// may show either side of the edge (judge.hpp).
 inline constexpr double tying_distance = 1.0 / 1024;
 
-/// Maps a distance to an edge to a score: one at distance zero, one half at a millionth of a pixel.
+/// Converts a distance to an edge to a score: one at distance zero, one half at a millionth of a pixel.
 float nearness(double pixels);
 
-/// Raises the tie score of the pixels whose centres are within the tying distance of an edge, to nearness times the
-/// image's contrast there (`edge`, plus a millionth). The ends are homogeneous pixel coordinates (view.hpp); parts
-/// behind the eye are cut off.
+/// Raises the tie score of the pixels whose centres are within the tying distance of an edge to nearness times the
+/// image's contrast at the pixel (`edge`, plus a millionth). The ends of the edge are homogeneous pixel coordinates
+/// (view.hpp); parts behind the eye are cut off.
 void raise_ties(const glm::dvec3& a, const glm::dvec3& b, scene::ImageSize size, const SuspicionMap& edge,
                 SuspicionMap& tie);
 

@@ -8,7 +8,7 @@
 namespace tessera::reference {
 namespace {
 
-/// high + low equals the exact result, and high is the rounded result.
+/// The sum high + low equals the exact result, and high is the rounded result.
 struct TwoParts {
   double high, low;
 };
@@ -23,7 +23,7 @@ TwoParts exact_sum(double a, double b) {
   return {high, (a - a_part) + (b - b_part)};
 }
 
-/// An exact sum of doubles, as non-overlapping parts of increasing size: the last part has the sum's sign.
+/// An exact sum of doubles, as non-overlapping parts of increasing size. The last part has the sign of the sum.
 class ExactSum {
  public:
   void add(double term) {

@@ -13,7 +13,7 @@ std::size_t square_index(const FacePiece& piece, int i, int j) {
   return static_cast<std::size_t>(i) + row * static_cast<std::size_t>(j);
 }
 
-/// Rows of n + 1, n, n - 1 ... points.
+/// Returns the index of a point in rows of n + 1, n, n - 1 ... points.
 std::size_t triangle_index(int n, int i, int j) {
   const int before = j * (n + 1) - j * (j - 1) / 2;
   return static_cast<std::size_t>(before) + static_cast<std::size_t>(i);
@@ -98,14 +98,15 @@ std::pair<FacePiece, FacePiece> halves(const FacePiece& piece) {
   if (piece.triangle) return triangle_halves(piece);
   const PieceSlopes s = slopes(piece);
   const double a = longest(s.along_a), b = longest(s.along_b);
-  // Avoids slivers of the face, whose narrow side would be taken for small: the longer side in the face then decides.
+  // Prevents slivers of the face, whose narrow side would be mistaken for a small piece: the longer side in the face
+  // decides.
   const double a_side = glm::length(piece.along_a), b_side = glm::length(piece.along_b);
   const bool across_a = a_side > 16 * b_side ? true : b_side > 16 * a_side ? false : a >= b;
   return square_halves(piece, across_a);
 }
 
 PiecePoint point_of(const FacePiece& piece, glm::dvec2 place) {
-  // De Casteljau down to the last round but one, whose points also give the derivatives.
+  // De Casteljau's algorithm down to the last round but one, whose points also give the derivatives.
   std::vector<glm::dvec3> p = piece.control;
   if (piece.triangle) {
     const int n = piece.a_degree;

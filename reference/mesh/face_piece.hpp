@@ -18,15 +18,15 @@ struct FacePiece {
   std::vector<glm::dvec3> control;
 };
 
-/// The control vectors of a piece's derivatives by (a, b).
+/// The control vectors of a piece's derivatives with respect to a and b.
 struct PieceSlopes {
   std::vector<glm::dvec3> along_a, along_b;
 };
 
 PieceSlopes slopes(const FacePiece& piece);
 
-/// Two halves: a square is cut across its longer direction, a triangle from the middle of the side b = 0 to the
-/// opposite corner, so that halves of halves keep their shape (newest-vertex bisection).
+/// Returns the two halves of a piece. A square is cut across its longer direction, a triangle from the middle of the
+/// side b = 0 to the opposite corner, so that halves of halves keep their shape (newest-vertex bisection).
 std::pair<FacePiece, FacePiece> halves(const FacePiece& piece);
 
 /// The point of a patch at (a, b), with its derivatives.

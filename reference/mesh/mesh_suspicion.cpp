@@ -19,10 +19,10 @@ namespace {
 
 constexpr double quantum = 0x1p-30;  // assumed rounding of a renderer, relative to the range
 constexpr double nothing = 1e-12;    // lower scores are ignored
-/// Of larger meshes this many tets are examined, and the edges of fewer.
+/// Largest numbers of tets, and of tets with edges, that are examined in larger meshes.
 constexpr std::size_t most_tets = 1 << 18, most_tets_with_edges = 1 << 16;
 
-/// Marked pixels of a cell: one in `pixels_per_mark`, at most `most_marks`.
+/// One pixel in `pixels_per_mark` of a cell is marked, at most `most_marks`.
 constexpr double pixels_per_mark = 32, most_marks = 64;
 
 class MeshSuspects {
@@ -116,7 +116,8 @@ class MeshSuspects {
     const double x = place.x / place.z, y = place.y / place.z;
     if (!(place.z > 0 && x >= 0 && y >= 0 && x < image_.size.width && y < image_.size.height)) return;
     const std::size_t pixel = image_.index(static_cast<int>(x), static_cast<int>(y));
-    // For a rounded depth, only transmitted light counts; a step may be visible from the front.
+    // For the rounding of a depth, only light transmitted through the pixel counts; a step may be visible from the
+    // front.
     const double through = 1 - std::clamp<double>(image_.rgba[4 * pixel + 3], 0, 1);
     const double along = view_.length_per_depth(x, y);
     if (by_step >= nothing)

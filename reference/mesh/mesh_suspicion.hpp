@@ -14,15 +14,16 @@ namespace tessera::reference {
 ///
 /// Noise   scalars and depths are assumed to be rounded to 2^-30 of their range over the mesh. The ranking of suspects
 ///         is the same for a renderer that rounds more or less.
-/// Cost    a pass over the tets and over their edges' pixels; if there are more than 262,144 tets, over that many,
-///         evenly distributed, and the edges of 65,536.
+/// Cost    a pass over the tets and over the pixels of their edges. If there are more than 262,144 tets, only 262,144
+/// of
+///         them are used, evenly distributed, and the edges of 65,536.
 struct MeshSuspicion {
-  SuspicionMap step;   ///< possible error of light by the scalars' rounding in one cell, at some of its pixels
-  SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (1e-3 pixel at most), times the image's contrast
-  SuspicionMap depth;  ///< possible error of light by the depths' rounding in one cell, at some of its pixels
+  SuspicionMap step;   ///< possible error of light from rounding of the scalars in one cell, at some of its pixels
+  SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (at most 1e-3 pixel), times contrast
+  SuspicionMap depth;  ///< possible error of light from rounding of the depths in one cell, at some of its pixels
 };
 
-/// `edge`: the image's ImageSuspicion::edge. `threads` 0: all cores.
+/// `edge` is the image's ImageSuspicion::edge. `threads` 0: all cores.
 MeshSuspicion suspect(const scene::TetMeshView& mesh, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads = 0);

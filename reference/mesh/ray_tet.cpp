@@ -11,8 +11,8 @@ namespace tessera::reference {
 namespace {
 
 /// Whether all corners are clearly on one side of the plane through the eye that projects to the column (axis 0) or row
-/// (axis 1) `at`: then no line in that plane meets them. Saves most of the work for cells that cross the eye's plane,
-/// which have no box. The margin is far wider than rounding.
+/// (axis 1) `at`. In that case no line in that plane meets the cell. This saves most of the work for cells that cross
+/// the eye's plane, which have no box. The margin is far wider than rounding.
 bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   int left = 0, right = 0;
   for (const Corner& c : corners) {
@@ -24,8 +24,8 @@ bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   return left == 4 || right == 4;
 }
 
-/// E of an edge: the sign on rounded lines of sight, after the tie rule, and the magnitude on the vertices themselves,
-/// which is a weight.
+/// The value E of an edge: its sign on rounded lines of sight, after the tie rule, and its magnitude for the unrounded
+/// vertices, which is used as a weight.
 struct EdgeValue {
   int sign;
   long double value;
@@ -61,7 +61,8 @@ int sign_by_sight(double x, double y, const glm::dvec3& a, const glm::dvec3& b) 
   if (rounded.good) return rounded.value > 0 ? 1 : -1;
   const Determinant exact = exact_determinant({x, y, 1}, a, b);
   if (exact.sign != 0) return exact.sign;
-  // On the edge: the sign is that of the derivative of E by x, or if that is zero, by y.
+  // The line meets the edge. The sign is that of the derivative of E with respect to x or, if that is zero, with
+  // respect to y.
   const int by_x = exact_determinant({1, 0, 0}, a, b).sign;
   return by_x != 0 ? by_x : exact_determinant({0, 1, 0}, a, b).sign;
 }
@@ -91,10 +92,11 @@ bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 struct Hit {
   double depth, scalar;
   double change;  ///< scalar minus `from`
-  int face = -1;  ///< the opposite corner
+  int face = -1;  ///< index of the opposite corner
 };
 
-/// Weights need not be normalised, only non-negative; the results are between the corners' by construction.
+/// Weights need not be normalised, only non-negative. The results are between the values of the corners by
+/// construction.
 Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights, double from) {
   const long double sum = weights[0] + weights[1] + weights[2];
   long double depth = 0, scalar = 0, change = 0;
@@ -110,7 +112,7 @@ Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long 
           std::clamp(static_cast<double>(change), s0 - from, s1 - from)};
 }
 
-/// Computed from the three edges' values, if the line is on the same side of all.
+/// Computes the hit from the values of the three edges, if the line is on the same side of all of them.
 std::optional<Hit> hit_of(const std::array<const Corner*, 3>& c, const EdgeValue& ab, const EdgeValue& bc,
                           const EdgeValue& ac, double from) {
   // E_ca is -E_ac.
@@ -119,8 +121,8 @@ std::optional<Hit> hit_of(const std::array<const Corner*, 3>& c, const EdgeValue
   return weighted(c, {std::abs(bc.value), std::abs(ac.value), std::abs(ab.value)}, from);
 }
 
-/// The scalar at an eye on the cell's surface: the volumes spanned by the eye and the four faces are its barycentric
-/// coordinates.
+/// Returns the scalar at an eye on the cell's surface. The volumes spanned by the eye and the four faces are its
+/// barycentric coordinates.
 double scalar_at_eye(const std::array<Corner, 4>& c) {
   const auto volume = [&](int i, int j, int k) {
     return exact_determinant(c[i].vertex.homogeneous, c[j].vertex.homogeneous, c[k].vertex.homogeneous).value;

@@ -15,8 +15,8 @@ struct Corner {
 };
 
 /// The interval of a line inside a tetrahedron: planar depths front <= back and the scalars there. The scalars are also
-/// stored as differences to the scalar of one corner: a sum would round away on which side of an almost equal step of
-/// the transfer function a scalar is, and how far from it.
+/// stored as differences to the scalar of one corner, because rounding a sum could move a scalar to the other side of
+/// an almost equal step of the transfer function, or change its distance from the step.
 struct Stretch {
   double front, back;
   double scalar_front, scalar_back;
@@ -24,10 +24,11 @@ struct Stretch {
   int face_front = -1, face_back = -1;  ///< index of the opposite corner; -1: the interval does not end at a face
 };
 
-/// The intersection of the line (not only the half in front of the eye) through pixel coordinates (x, y) with a
-/// tetrahedron; no value if there is none.
+/// Returns the intersection of the line through pixel coordinates (x, y) with a tetrahedron; no value if there is none.
+/// The line includes the half behind the eye.
 ///
-/// Corners  in lexicographic order of their world positions, so that two cells that share a face compute the same
+/// Corners  are used in lexicographic order of their world positions, so that two cells that share a face compute the
+/// same
 ///          numbers on it.
 /// Decision exact, on rounded lines of sight (view.hpp). Three of them, A, B and (x, y), are in one plane if E =
 ///          det[(x,y,1), A, B] = 0; the line passes through a triangle ABC iff E_ab, E_bc and E_ca have one sign.
@@ -40,15 +41,16 @@ struct Stretch {
 /// Flat     cells give intervals of length zero, up to rounding.
 std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y);
 
-/// The intersection of a line with a triangle, decided as above: among triangles that share edges, every line through
-/// them meets exactly one. No value if there is none, and if the eye is in the triangle's plane.
+/// The intersection of a line with a triangle, decided like that with a tetrahedron: of triangles that share edges,
+/// every line through their union meets exactly one. No value if there is no intersection, and if the eye is in the
+/// triangle's plane.
 struct TriangleHit {
   double depth, scalar;
 };
 std::optional<TriangleHit> intersect(const std::array<Corner, 3>& corners, double x, double y);
 
-/// The part of an interval between two planar depths; no value if nothing is strictly between them. An interval of
-/// length zero between them is kept.
+/// Returns the part of an interval between two planar depths; no value if no part is strictly between them. An interval
+/// of length zero between them is kept.
 std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double farthest);
 
 }  // namespace tessera::reference

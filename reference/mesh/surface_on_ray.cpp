@@ -9,19 +9,20 @@
 namespace tessera::reference {
 namespace {
 
-// Tolerance, relative to the field's magnitude in a cell, within which a clipping plane has a surface's value. A ray
-// meets the plane with an error of 1e-12 of the depth, because vertices are projected to pixels in double.
+// Tolerance, relative to the field's magnitude in a cell, within which the field on a clipping plane counts as equal to
+// a surface's value. A ray meets the plane with an error of 1e-12 of the depth, because vertices are projected to
+// pixels in double.
 constexpr double level = 1e-10;
 
 using Vector = glm::vec<3, long double>;
 
-/// The gradient times six times the tet's volume, with either sign: by Cramer's rule for the system whose rows are the
-/// tet's edges from one corner.
+/// Returns the gradient times six times the tet's volume, with either sign, by Cramer's rule for the system whose rows
+/// are the tet's edges from one corner.
 Vector scaled_gradient(const scene::TetMeshView& mesh, std::size_t tet) {
   const scene::Tet& t = mesh.tets[tet];
   const Vector a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]), d(mesh.positions[t[3]]);
-  // Each corner's share of the field increases along the normal of the opposite face, in proportion to its area; the
-  // sum of all four is constant.
+  // The share of each corner in the field increases along the normal of the opposite face, in proportion to the area of
+  // the face. The sum of all four is constant.
   const auto above_first = [&](std::size_t i) {
     return static_cast<long double>(mesh.scalars[t[i]]) - mesh.scalars[t[0]];
   };

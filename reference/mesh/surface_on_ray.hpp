@@ -23,33 +23,33 @@ struct SurfaceOfValue {
   double opacity;
 };
 
-/// All iso-surfaces, ascending by value; equal ones in the given order.
+/// Returns all iso-surfaces, ascending by value; those of equal value keep their order.
 std::vector<SurfaceOfValue> by_value(const Surfaces& surfaces, const scene::TransferFunction& function);
 
-/// Planar depths between which a ray is kept, and whether a clipping plane is there.
+/// Planar depths between which a ray is kept, and whether there is a clipping plane at either of them.
 struct KeptDepths {
   double nearest, farthest;
   bool nearest_cut = false, farthest_cut = false;
 };
 
-/// A crossing of a segment with a surface: its fraction of the segment's length.
+/// A crossing of a segment with a surface: the fraction of the segment's length in front of the crossing.
 struct SurfaceCrossing {
   double part;
   const SurfaceOfValue* surface;
 };
 
-/// The crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in order along it, between
-/// two planar depths. A surface is crossed if the scalar at one end is below its value and at the other is not. For
-/// each surface the scalars are relative to its value, so that the sides are correct to a double's last place. An end
-/// at one of the two depths, if it is `cut` by a clip, has a surface's value if it differs by less than a part in 1e10
-/// (tessera/selection.hpp: 1e12, which a distant ray cannot resolve).
+/// Returns the crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in order along the
+/// line, between two planar depths. A surface is crossed if the scalar at one end is below the surface's value and at
+/// the other end is not. For each surface the scalars are relative to its value, so that the sides are correct to the
+/// last place of a double. At an end that is `cut` by a clipping plane, a scalar counts as equal to the value if it
+/// differs by less than a part in 1e10 (tessera/selection.hpp: 1e12, which a distant ray cannot resolve).
 std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
                                                const std::array<Corner, 4>& corners, double x, double y,
                                                const KeptDepths& kept);
 
-/// The appearance of a surface of faces.
+/// The appearance of a surface that consists of faces.
 struct Paint {
-  std::optional<glm::dvec3> color;  ///< linear RGB, unlit; no value: the transfer function's at the field's value
+  std::optional<glm::dvec3> color;  ///< linear RGB, unlit; no value: that of the transfer function at the field's value
   double opacity;
 };
 
@@ -66,27 +66,27 @@ struct TriangleCrossing {
   const ProjectedTriangle* triangle;
 };
 
-/// The field's gradient in a tet of point data, of any length and either sign; 0 if there is none. In a flat tet its
-/// normal.
+/// Returns the gradient of the field in a tet of point data, of any length and either sign; 0 if there is none. In a
+/// flat tet, returns the normal of the tet.
 glm::dvec3 gradient_in(const scene::TetMeshView& mesh, std::size_t tet);
 
-/// The normal of three points, of any length.
+/// Returns the normal of the plane through three points, of any length.
 glm::dvec3 normal_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
-/// The faces that only one tet of a mesh has, one bit per corner of the tet, the corner opposite to the face: corner i
-/// in the order of positions. Faces are equal if their corners are at the same positions.
+/// For each tet, returns a bit per face that no other tet of the mesh has. Bit i is that of the face opposite to corner
+/// i, in the order of positions. Faces are equal if their corners are at the same positions.
 std::vector<std::uint8_t> open_faces(const scene::TetMeshView& mesh);
 
-/// A colour, lit from the eye, on a surface of that normal, seen along that ray (both of any length). Without a normal,
-/// as if seen face on.
+/// Returns a colour, lit from the eye, on a surface with this normal, seen along this ray; the lengths of both vectors
+/// do not matter. Without a normal, the surface is lit as if it were seen face on.
 std::array<double, 3> lit(const glm::dvec3& color, const SurfaceLight& light, const glm::dvec3& ray,
                           const glm::dvec3& normal);
 
-/// A surface's colour if the angle between the ray and its normal has this cosine, 0 to 1.
+/// Returns the colour of a surface if the angle between the ray and the surface's normal has this cosine, 0 to 1.
 std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, double cosine);
 
-/// A surface's colour in a tet, lit from the eye, seen along a ray of that direction (of any length). If the field has
-/// no gradient it is lit as if seen face on.
+/// Returns the colour of a surface in a tet, lit from the eye, seen along a ray of this direction (of any length). If
+/// the field has no gradient, the surface is lit as if it were seen face on.
 std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, const glm::dvec3& ray,
                           const scene::TetMeshView& mesh, std::size_t tet);
 
