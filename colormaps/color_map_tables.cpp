@@ -8,8 +8,8 @@ namespace {
 
 using glm::dvec3;
 
-// The published 256-entry tables at 17 equal distances; linear interpolation in display values stays within 0.025 of
-// the tables.
+// The published tables of 256 entries, sampled at 17 equal distances; linear interpolation of display values stays
+// within 0.025 of the published tables.
 
 // Smith, van der Walt, Firing: "A Better Default Colormap for Matplotlib", 2015; released as CC0.
 constexpr std::array<dvec3, 17> viridis{{{0.267, 0.0049, 0.3294},
@@ -120,7 +120,8 @@ constexpr std::array<dvec3, 17> turbo{{{0.19, 0.0718, 0.2322},
                                        {0.6747, 0.0895, 0.0045},
                                        {0.4796, 0.0158, 0.0106}}};
 
-// Moreland: "Diverging Color Maps for Scientific Visualization", ISVC 2009: only the ends; the rest is computed.
+// Moreland: "Diverging Color Maps for Scientific Visualization", ISVC 2009: only the ends; the colours between them are
+// computed.
 constexpr std::array<dvec3, 2> cool_warm{{{0.230, 0.299, 0.754}, {0.706, 0.016, 0.150}}};
 
 // Hues of a glowing black body at uniformly increasing lightness, black to white, mixed in L*a*b*.

@@ -9,15 +9,15 @@
 
 namespace tessera::colormaps {
 
-/// Colours of a preset: display values at equal distances from the low to the high end, and the colour space that
-/// interpolates them.
+/// The colours of a preset: display values at equal distances from the low to the high end, and the colour space in
+/// which they are interpolated.
 struct ColorMapTable {
   std::string_view name;
   ColorSpace space;
   std::span<const glm::dvec3> colors;
 };
 
-/// All tables, the default first. The sources are cited at the numbers.
+/// Returns all tables, the default first. Comments at the numbers cite the sources.
 std::span<const ColorMapTable> color_map_tables();
 
 }  // namespace tessera::colormaps

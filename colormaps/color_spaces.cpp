@@ -16,19 +16,20 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-/// Linear sRGB to XYZ (IEC 61966-2-1), by columns.
+/// The matrix from linear sRGB to XYZ (IEC 61966-2-1), by columns.
 const glm::dmat3& xyz_from_rgb() {
   static const glm::dmat3 matrix{{0.4124, 0.2126, 0.0193}, {0.3576, 0.7152, 0.1192}, {0.1805, 0.0722, 0.9505}};
   return matrix;
 }
 
-/// The exact inverse instead of the standard's four digits, so that colours survive a round trip.
+/// The exact inverse of xyz_from_rgb() instead of the standard's four digits, so that colours do not change when they
+/// are converted back.
 const glm::dmat3& rgb_from_xyz() {
   static const glm::dmat3 matrix = glm::inverse(xyz_from_rgb());
   return matrix;
 }
 
-/// XYZ of (1, 1, 1): D65. Because of it, greys have a* = b* = 0 exactly.
+/// The XYZ of (1, 1, 1), which is D65. With this white, greys have exactly a* = b* = 0.
 dvec3 display_white() { return xyz_from_rgb() * dvec3(1); }
 
 double lab_curve(double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; }
@@ -68,8 +69,8 @@ double angle_between(double a, double b) {
   return turn > pi ? 2 * pi - turn : turn;
 }
 
-/// Hue of an unsaturated end of magnitude `m`: rotated from the saturated end's hue so that the path between them is
-/// perceptually straight (Moreland 2009, listing 2).
+/// Returns the hue of an unsaturated end of magnitude `m`: the hue of the saturated end, rotated so that the path
+/// between both ends is perceptually straight (Moreland 2009, listing 2).
 double hue_of_unsaturated(const Msh& saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
   const double turn =
@@ -98,7 +99,7 @@ dvec3 mix_diverging(const dvec3& a, const dvec3& b, double t) {
       lab_from_msh({std::lerp(low.m, high.m, t), std::lerp(low.s, high.s, t), std::lerp(low.h, high.h, t)}));
 }
 
-/// Hue in [0, 1), saturation and value.
+/// Returns hue in [0, 1), saturation and value.
 dvec3 hsv_from_rgb(const dvec3& c) {
   const double high = std::max({c.x, c.y, c.z}), low = std::min({c.x, c.y, c.z}), spread = high - low;
   if (!(spread > 0)) return {0, 0, high};

@@ -23,7 +23,7 @@ constexpr double highest_label = 63;
 
 bool whole(double x) { return x == std::floor(x) && std::abs(x) < 1e9; }
 
-/// Hounsfield units: colour and opacity, before scaling.
+/// Colour and opacity, before scaling, at a value in Hounsfield units.
 struct CtPoint {
   double value;
   glm::dvec3 color;
@@ -42,7 +42,7 @@ constexpr std::array<CtPoint, 10> ct_points{{{-900, {0.55, 0.65, 0.75}, 0},
 
 constexpr std::array<glm::dvec3, 4> body_colors{
     {{0.35, 0.08, 0.06}, {0.72, 0.30, 0.20}, {0.93, 0.68, 0.48}, {1.0, 0.96, 0.86}}};
-/// From far to near.
+/// Colours from far to near.
 constexpr std::array<glm::dvec3, 4> shape_colors{
     {{0.10, 0.14, 0.30}, {0.22, 0.42, 0.58}, {0.62, 0.72, 0.66}, {0.98, 0.95, 0.85}}};
 
@@ -54,7 +54,7 @@ std::vector<ColorPoint> spread(std::span<const glm::dvec3> colors, double low, d
   return points;
 }
 
-/// Hues a golden angle apart: neighbours differ most, and any 24 are distinct.
+/// Hues of consecutive labels differ by a golden angle, so that neighbours differ most, and any 24 are distinct.
 glm::dvec3 label_color(double label) {
   const double turns = 0.58 + 0.6180339887498949 * std::abs(label);
   const double hue = turns - std::floor(turns);
@@ -67,7 +67,7 @@ glm::dvec3 label_color(double label) {
   return color;
 }
 
-/// Curves with unscaled opacities, as extinctions in units of 1 / unit distance.
+/// Curves with unscaled opacities; these are given as extinctions in units of 1 / unit distance.
 struct Draft {
   std::vector<ColorPoint> colors;
   std::vector<std::array<double, 2>> extinctions;  ///< value, extinction
@@ -78,7 +78,8 @@ struct Draft {
   bool scales = true;
 };
 
-/// Known labels: steps halfway to the next label, but at most half a unit away, and nothing between.
+/// For known labels, the steps are halfway to the next label, but at most half a unit from the label, and opacity is
+/// zero between labels.
 Draft draft_known_labels(const std::vector<double>& labels, const std::array<double, 2>& range,
                          const ValueShares& shares) {
   Draft draft;
@@ -114,7 +115,8 @@ Draft draft_labels(const DefaultField& field, const std::array<double, 2>& range
     const bool clear = field.is_grid && labels[i] == 0;
     const double low = i == 0 ? labels[i] : (labels[i - 1] + labels[i]) / 2;
     const double high = i + 1 == labels.size() ? labels[i] : (labels[i] + labels[i + 1]) / 2;
-    // Proportional to the inverse of its share of the volume, damped: small organs stay visible inside large ones.
+    // Opacity is proportional to the inverse of the label's share of the volume, damped, so that small organs stay
+    // visible inside large ones.
     const double share = std::max(shares.between(low, high + (i + 1 == labels.size() ? 1 : 0)), 1e-3);
     const double extinction = clear ? 0 : std::pow(share, -0.6);
     for (const double end : {low, high}) {
@@ -138,7 +140,7 @@ Draft draft_ct() {
   return draft;
 }
 
-/// Every band of the range absorbs about the same.
+/// Returns extinctions for which every band of the range absorbs about the same.
 std::vector<std::array<double, 2>> even_extinctions(const ValueShares& shares, const DefaultRange& r) {
   std::array<double, bands> share{}, smooth{};
   const double from = r.has_ground ? r.ground : r.low, width = (r.high - from) / bands;
@@ -161,7 +163,7 @@ std::vector<std::array<double, 2>> even_extinctions(const ValueShares& shares, c
   for (int b = 0; b < bands; ++b) {
     const double t = (b + 0.5) / bands, value = from + (b + 0.5) * width;
     const double rise = r.about_zero ? 1 + 2 * std::abs(2 * t - 1) : 1 + 2 * t;
-    // No band counts as rarer than a fifth of an even share: rare values must not hide everything else.
+    // No band is treated as rarer than a fifth of an even share, because rare values must not hide everything else.
     points.push_back({value, rise * std::pow(std::max(smooth[static_cast<std::size_t>(b)], 0.2 / bands), -0.8)});
   }
   return points;
@@ -203,7 +205,7 @@ Draft draft_shape(const ValueShares& shares, const std::array<double, 2>& range)
   return draft;
 }
 
-/// Converts extinctions to opacities: at most 8 per unit distance, which transmits 3e-4.
+/// Converts extinctions to opacities. Extinctions are clamped to 8 per unit distance, which transmits 3e-4.
 std::vector<OpacityPoint> opacities_of(const Draft& draft, double scale) {
   std::vector<OpacityPoint> points;
   for (const auto& [value, extinction] : draft.extinctions)
@@ -219,7 +221,7 @@ ValueShares::ValueShares(const scene::FieldSamples& samples, bool stored) {
   const bool own = stored && samples.stored.size() == samples.samples.size();
   for (std::size_t i = 0; i < samples.samples.size(); ++i)
     sorted.emplace_back(own ? samples.stored[i] : samples.samples[i].value, samples.samples[i].volume);
-  std::ranges::sort(sorted);  // also by volume, so that sums have the same bits for any order of samples
+  std::ranges::sort(sorted);  // also sorted by volume, so that sums have the same bits for any order of samples
   double sum = 0;
   for (const auto& [value, volume] : sorted) {
     values_.push_back(value);

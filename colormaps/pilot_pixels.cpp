@@ -29,12 +29,12 @@ PilotPixels::PilotPixels(const scene::FieldSamples& samples, std::span<const std
   const std::array<double, 3> face{side_length.y * side_length.z, side_length.z * side_length.x,
                                    side_length.x * side_length.y};
   const double largest_face = *std::ranges::max_element(face);
-  std::array<std::size_t, 3> first{};  // first pixel of each axis' image
+  std::array<std::size_t, 3> first{};  // for each axis, the first pixel of its image
   std::size_t pictures = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (face[axis] > 0 && face[axis] >= least_face * largest_face) first[axis] = pictures++ * pixels;
   depths_.assign(pictures * pixels, 0.0);
-  // A sample is distributed over the nearest pixels: otherwise rows of samples would leave stripes.
+  // Each sample is distributed over the nearest pixels, because otherwise rows of samples would leave stripes.
   struct Place {
     int pixel[2];
     double share[2];

@@ -25,12 +25,13 @@ constexpr double flat_opacity = 0.1;
 
 std::vector<OpacityPoint> inverse_ramp() { return {{0, 0.2}, {1, 0.03}}; }
 std::vector<OpacityPoint> ends() { return {{0, 0.2}, {0.5, 0.005}, {1, 0.2}}; }
-/// The background of a scan or a simulation is usually at the low end: it is clear, so that objects in it are visible.
+/// Clear at the low end, because the background of a scan or a simulation usually has low values, and would hide
+/// objects.
 std::vector<OpacityPoint> rise() { return {{0, 0}, {0.1, 0}, {0.5, 0.15}, {1, 0.6}}; }
 std::vector<OpacityPoint> surface() { return {{0, 0}, {0.45, 0}, {0.55, 0.9}, {1, 0.9}}; }
 std::vector<OpacityPoint> flat() { return {{0, flat_opacity}, {1, flat_opacity}}; }
 
-/// Shells at 1/10, 3/10, ... of the range, each a tent with a base of 1/25 of the range.
+/// Shells at 1/10, 3/10, ... of the range; each is a tent with a base of 1/25 of the range.
 std::vector<OpacityPoint> peaks() {
   constexpr double half_width = 0.02;
   std::vector<OpacityPoint> points{{0, 0}};
@@ -106,7 +107,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   for (OpacityPoint& point : curves.opacities) point.value = std::lerp(low, high, point.value);
   if (!options.opacity_points.empty()) curves.opacities = points_over(options.opacity_points, low, high);
   if (low == high) {
-    // The middle of the map; no variant may make the only existing value invisible.
+    // A constant field gets the middle of the map, because no variant may make the only existing value invisible.
     const double middle = 0.5 * static_cast<double>(count - 1);
     const auto below = static_cast<std::size_t>(middle);
     const glm::dvec3 color = mix_colors(table->colors[below], table->colors[std::min(below + 1, count - 1)],

@@ -11,12 +11,12 @@
 namespace tessera::colormaps {
 namespace {
 
-constexpr double step_sharpness = 0.99, linear_sharpness = 0.01;  // vtkPiecewiseFunction's bounds
+constexpr double step_sharpness = 0.99, linear_sharpness = 0.01;  // bounds of vtkPiecewiseFunction
 constexpr std::size_t most_knots = 200000;
 
 double clamped_midpoint(const OpacityPoint& p) { return std::clamp(p.midpoint, 1e-5, 1 - 1e-5); }
 
-/// Position of x between low and high, as a fraction.
+/// Returns the position of x between low and high, as a fraction.
 double fraction(double x, double low, double high) {
   // high - low may overflow, while halves of the smallest doubles are zero.
   const double scale = std::max(std::abs(low), std::abs(high)) > 1e300 ? 0.5 : 1;
@@ -33,11 +33,11 @@ Sample mix(const Sample& a, const Sample& b, double u) {
   return {glm::mix(a.color, b.color, u), std::lerp(a.depth, b.depth, u)};
 }
 
-/// The pair of neighbouring points around a piece between breaks; equal where the curve is clamped.
+/// The pair of neighbouring points around a piece between breaks. Both are equal where the curve is clamped.
 template <class Point>
 struct Span {
   const Point *a, *b;
-  double t_begin, t_end;  ///< the piece's ends, as fractions from a to b
+  double t_begin, t_end;  ///< ends of the piece, as fractions from a to b
 
   Span(const std::vector<Point>& points, double begin, double end) {
     // Every point is a break, so the first point beyond `begin` is not inside the piece.
@@ -66,7 +66,7 @@ class Refiner {
   }
 
  private:
-  /// Values where the function or its slope may jump.
+  /// Returns the values where the function or its slope may jump.
   [[nodiscard]] std::vector<double> find_breaks() const {
     std::vector<double> breaks;
     const auto& colors = curves_.colors;
@@ -101,11 +101,11 @@ class Refiner {
            std::abs(exact.depth - straight.depth) <= settings_.extinction_tolerance * std::max(exact.depth, 0.01);
   }
 
-  /// Knots from `begin`'s right-hand limit to `end`'s left-hand limit.
+  /// Adds knots from the right-hand limit at `begin` to the left-hand limit at `end`.
   void refine(double begin, double end) {
     const Span<ColorPoint> colors(curves_.colors, begin, end);
     const Span<OpacityPoint> opacities(curves_.opacities, begin, end);
-    // The piece determines the side of a step, not a rounded fraction.
+    // The piece determines which side of a step is used; a fraction may have been rounded.
     const bool step = opacities.a->sharpness > step_sharpness && opacities.a != opacities.b;
     const double level =
         step && begin < middle(*opacities.a, *opacities.b) ? opacities.a->opacity : opacities.b->opacity;
@@ -113,8 +113,8 @@ class Refiner {
       return sample(mix_colors(colors.a->color, colors.b->color, colors.at(u), curves_.space, curves_.hue_wraps),
                     step ? level : mix_opacities(*opacities.a, *opacities.b, opacities.at(u)));
     };
-    // Fifteen test points per chord: between two points the curve is an arc or an S with at most one gamut edge or
-    // sextant.
+    // Fifteen test points per chord are enough, because between two points the curve is an arc or an S with at most one
+    // gamut edge or sextant.
     const auto chord_fits = [&](double u, const Sample& at_u, double v, const Sample& at_v) {
       for (int i = 1; i < 16; ++i)
         if (!fits(exact(std::lerp(u, v, i / 16.0)), mix(at_u, at_v, i / 16.0))) return false;
@@ -125,7 +125,8 @@ class Refiner {
     Sample at_u = exact(0);
     emit(begin, at_u);
     while (u < 1) {
-      // The longest chord from u within the tolerance, to an eighth; shorter ones than the smallest step gain nothing.
+      // Finds the longest chord from u within the tolerance, to an eighth. Chords shorter than the smallest step are
+      // not useful.
       constexpr double smallest_step = 1.0 / (1 << 16);
       double good = std::min(smallest_step, 1 - u), bad = 2 - u;
       for (double trial = std::min(last_step * 1.5, 1 - u); bad > good * 1.125;) {
@@ -159,11 +160,12 @@ class Refiner {
 
 double mix_opacities(const OpacityPoint& a, const OpacityPoint& b, double t) {
   const double middle = clamped_midpoint(a);
-  // Stretched so that the midpoint is at one half.
+  // The fraction is stretched so that the midpoint is at one half.
   t = t < middle ? 0.5 * t / middle : 0.5 + 0.5 * (t - middle) / (1 - middle);
   if (a.sharpness > step_sharpness) return t < 0.5 ? a.opacity : b.opacity;
   if (a.sharpness < linear_sharpness) return std::lerp(a.opacity, b.opacity, t);
-  // Pulled toward the middle by a power, then a cubic Hermite spline whose ends are flatter the larger the sharpness.
+  // The fraction is pulled toward the middle by a power. The result is the parameter of a cubic Hermite spline whose
+  // ends are flatter the larger the sharpness is.
   const double power = 1 + 10 * a.sharpness;
   t = t < 0.5 ? 0.5 * std::pow(2 * t, power) : 1 - 0.5 * std::pow(2 * (1 - t), power);
   const double rise = b.opacity - a.opacity, slope = (1 - a.sharpness) * rise, t2 = t * t, t3 = t2 * t;
