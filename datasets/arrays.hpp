@@ -7,10 +7,10 @@
 /// Converts meshes to the arrays of the public API, and back.
 namespace tessera::datasets {
 
-/// The mesh's arrays, which own it.
+/// Converts a mesh to arrays, which own the mesh.
 MeshArrays arrays_of(scene::TetMesh mesh);
 
-/// A copy of arrays in the layout of Dataset::mesh_arrays().
+/// Copies arrays in the layout of Dataset::mesh_arrays() to a mesh.
 scene::TetMesh mesh_of(const MeshArrays& arrays);
 
 }  // namespace tessera::datasets

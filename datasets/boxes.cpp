@@ -13,7 +13,7 @@ namespace {
 
 std::uint32_t u32(int n) { return static_cast<std::uint32_t>(n); }
 
-/// Vertices of a lattice at place(i, j, k), scalars by smooth_field.
+/// Returns a mesh with the vertices of a lattice at place(i, j, k), and scalars from smooth_field.
 template <class Place>
 scene::TetMesh fill(const Lattice& lattice, Place&& place) {
   scene::TetMesh mesh;
@@ -59,7 +59,8 @@ scene::TetMesh regular_split(int nx, int ny, int nz, const glm::dvec3& spacing, 
 scene::TetMesh graded(int n, double volume_ratio) {
   require(n >= 4 && n <= 1000 && n % 2 == 0, "graded", "n must be even and in 4 .. 1000");
   require(volume_ratio >= 1 && volume_ratio <= 1e15, "graded", "volume-ratio must be in 1 .. 1e15");
-  // n / 2 edges from the centre outwards, each `growth` times the last; the corner's volume is the edge ratio cubed.
+  // The n / 2 edges from the centre outwards are each `growth` times as long as the previous one; the ratio of volumes
+  // is the cube of the ratio of edges.
   const int half = n / 2;
   const double growth = std::pow(std::cbrt(volume_ratio), 1.0 / (half - 1));
   std::vector<double> at(static_cast<std::size_t>(n) + 1, 0.0);
@@ -119,7 +120,7 @@ scene::TetMesh thin_stack(int layers, double width, double thickness) {
     mesh.scalars[v] = 0.5 + 0.5 * std::sin(2.3999632297286533 * k);  // the golden angle: neighbours differ
   }
 
-  // The plate: grid lines at the hole's sides and three more on either side of it.
+  // The plate has grid lines at the hole's sides, and three more on either side of the hole.
   const double hole = 0.6 * width;
   const std::array<double, 9> lines{-1.0, -0.7, -0.4, -hole, 0, hole, 0.4, 0.7, 1.0};
   const Lattice plate{8, 8, 1};

@@ -17,7 +17,7 @@ const double pi = std::acos(-1.0);
 constexpr double radius = 0.5, x_inflow = -2.5, x_outflow = 10.5, y_wall = 3, half_span = 1.5;
 
 double bell(double x, double width) { return std::exp(-(x * x) / (width * width)); }
-/// 0 below `low`, 1 above `high`, smooth between.
+/// Returns 0 below `low`, 1 above `high`, and a smooth transition between.
 double ramp(double x, double low, double high) {
   const double u = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return u * u * (3 - 2 * u);
@@ -29,7 +29,7 @@ struct Vortex {
   double core, strength, turn;  ///< turn: +1 counter-clockwise, -1 clockwise
 };
 
-/// At span position z: the street's centre lines are wavy along the span, more so downstream.
+/// Returns a vortex at span position z: the street's centre lines are wavy along the span, more so downstream.
 Vortex vortex(int i, double z) {
   const double side = i % 2 == 0 ? 1 : -1, age = i;
   const double wave = (0.05 + 0.05 * age) * std::sin(2 * pi * z / 3 + 0.9 * age);
@@ -81,11 +81,12 @@ double vorticity(const glm::dvec3& p_world) {
 scene::TetMesh demo(double resolution) {
   if (!(resolution >= 0.2 && resolution <= 4)) throw scene::bad_input("demo: resolution must be in 0.2 .. 4");
   const auto scaled = [&](int n) { return static_cast<std::uint32_t>(std::lround(n * resolution)); };
-  // Hexahedra along the four walls; the outflow has most, because lines from the body to it cross the wake.
+  // Numbers of hexahedra along the four walls. The outflow has the largest number, because lines from the body to it
+  // cross the wake.
   const std::uint32_t right = scaled(44), top = scaled(28), left = scaled(12);
   const Lattice lattice{right + top + left + top, scaled(64), scaled(12), true};
 
-  // Around the box from the lower right corner, counter-clockwise.
+  // Points go around the box from the lower right corner, counter-clockwise.
   const auto wall = [&](std::uint32_t i) {
     const auto part = [](std::uint32_t a, std::uint32_t n) { return static_cast<double>(a) / n; };
     const double width = x_outflow - x_inflow, height = 2 * y_wall;

@@ -16,7 +16,7 @@
 namespace tessera::datasets {
 namespace {
 
-/// The values of one call: those given, else defaults.
+/// The values of one call: those given, and defaults for the others.
 class Values {
  public:
   Values(const std::string& kind, const std::map<std::string, double>& values) : kind_(kind), values_(values) {}

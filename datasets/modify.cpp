@@ -87,7 +87,8 @@ TetMesh subdivided(const TetMesh& mesh) {
   constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
   const std::size_t old_vertices = mesh.positions.size();
 
-  // Edges by their smaller vertex: count, prefix sum, fill, then sort each short list. Linear in the mesh.
+  // Edges are listed at their smaller vertex: count, prefix sum, fill, then sort each short list. The time is linear in
+  // the size of the mesh.
   std::vector<std::uint64_t> start(old_vertices + 1, 0);
   const auto each_edge = [&](auto&& visit) {
     for (const Tet& tet : mesh.tets)
@@ -100,7 +101,7 @@ TetMesh subdivided(const TetMesh& mesh) {
     std::vector<std::uint64_t> next(start.begin(), start.end() - 1);
     each_edge([&](const std::pair<std::uint32_t, std::uint32_t>& e) { ends[next[e.first]++] = e.second; });
   }
-  std::vector<std::uint64_t> first_edge(old_vertices + 1, 0);  // number of distinct edges before a vertex's own
+  std::vector<std::uint64_t> first_edge(old_vertices + 1, 0);  // distinct edges of the previous vertices
   for (std::size_t v = 0; v < old_vertices; ++v) {
     const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(start[v]);
     const auto end = ends.begin() + static_cast<std::ptrdiff_t>(start[v + 1]);

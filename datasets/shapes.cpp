@@ -14,7 +14,7 @@
 namespace tessera::datasets {
 namespace {
 
-/// Eight tets between the origin (vertex 6) and the octants of |x| + |y| + |z| = 1.
+/// Returns eight tets between the origin (vertex 6) and the octants of |x| + |y| + |z| = 1.
 scene::TetMesh octahedron() {
   scene::TetMesh mesh;
   mesh.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}};
@@ -38,7 +38,7 @@ scene::TetMesh single_tet() {
   scene::TetMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.tets = {{0, 1, 2, 3}};
-  sample_smooth_field(mesh);  // for its name
+  sample_smooth_field(mesh);  // needed for the name of the field
   mesh.scalars = {0, 1.0 / 3, 2.0 / 3, 1};
   return mesh;
 }
@@ -60,7 +60,7 @@ scene::TetMesh annulus(int n, bool seam) {
   for (std::uint32_t i = 0; i < lattice.columns(); ++i)
     for (std::uint32_t j = 0; j <= across; ++j)
       for (std::uint32_t k = 0; k <= across; ++k) {
-        // i % around: the seam's two sides then have exactly equal positions.
+        // With i % around, the seam's two sides have exactly equal positions.
         const double angle = -2 * std::acos(-1.0) * (i % around) / n, radius = 0.5 + 0.5 * j / across;
         mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.5 * k / across - 0.25);
       }
@@ -75,7 +75,8 @@ scene::TetMesh shells(int count, int levels, int layers) {
   require(levels >= 0 && levels <= 8, "shells", "levels must be in 0 .. 8");
   require(layers >= 1 && layers <= 1000, "shells", "layers must be in 1 .. 1000");
 
-  // The sphere's triangles: the octahedron's, divided 1:4 by barycentric coordinates with coincident vertices merged.
+  // The triangles of the sphere are those of the octahedron, divided 1:4 by barycentric coordinates, with coincident
+  // vertices merged.
   const std::uint32_t n = 1u << levels;
   std::vector<glm::dvec3> directions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -129,8 +130,8 @@ scene::TetMesh shells(int count, int levels, int layers) {
 
 scene::TetMesh cyclic_bars(int n) {
   require(n >= 1 && n <= 100000, "bars", "n must be in 1 .. 100000");
-  // Bar b extends along the side of a triangle in the xy plane, past its corners, and rises from z = -0.3 to 0.3: at
-  // each corner the end of one is above the start of the next.
+  // Bar b extends along a side of a triangle in the xy plane, past its corners, and rises from z = -0.3 to 0.3. At each
+  // corner, the end of one bar is above the start of the next.
   scene::TetMesh mesh;
   const Lattice lattice{static_cast<std::uint32_t>(n), 1, 1};
   for (int bar = 0; bar < 3; ++bar) {

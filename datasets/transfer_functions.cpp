@@ -14,13 +14,13 @@ scene::Knot random_knot(Random& random, double value, double extinction) {
   scene::Knot knot;
   knot.value = value;
   for (int i = 0; i < 3; ++i) knot.color[i] = random.uniform();
-  // Squared: mostly thin with a few thick knots, like functions drawn by hand.
+  // Squared, so that most knots are thin and a few are thick, as in functions drawn by hand.
   const double u = random.uniform();
   knot.extinction = random.below(4) == 0 ? 0 : extinction * u * u;
   return knot;
 }
 
-/// `n` increasing values strictly inside (0, 1), unevenly spaced.
+/// Returns `n` increasing values strictly inside (0, 1), unevenly spaced.
 std::vector<double> places(Random& random, int n) {
   std::vector<double> at;
   at.reserve(static_cast<std::size_t>(n));

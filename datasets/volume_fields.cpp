@@ -9,7 +9,8 @@
 namespace tessera::datasets {
 namespace {
 
-/// In [0, 1), the same on any machine: uses neither a library's random numbers nor sines of large numbers.
+/// Returns a random number in [0, 1) that is the same on any machine: computed without a library's random numbers and
+/// without sines of large numbers.
 double at_lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
   std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u +
                     static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu +
@@ -24,7 +25,7 @@ double smooth_step(double t) {
   return t * t * (3 - 2 * t);
 }
 
-/// Random numbers of [-1, 1) at the points of a unit lattice, with smooth interpolation.
+/// Interpolates, smoothly, random numbers in [-1, 1) at the points of a unit lattice.
 double noise(const glm::dvec3& p) {
   const glm::dvec3 low = glm::floor(p);
   const auto x = static_cast<std::int64_t>(low.x), y = static_cast<std::int64_t>(low.y),
@@ -37,15 +38,15 @@ double noise(const glm::dvec3& p) {
   return 2 * ((1 - w) * near + w * far) - 1;
 }
 
-/// Octaves of noise, each with half the amplitude and twice the frequency of the previous; the first has `scale`
-/// lattice points per unit.
+/// Sums octaves of noise, each with half the amplitude and twice the frequency of the previous one. The first has
+/// `scale` lattice points per unit.
 double octaves(const glm::dvec3& p, double scale, int count) {
   double sum = 0, amplitude = 0.5;
   for (int n = 0; n < count; ++n, scale *= 2, amplitude /= 2) sum += amplitude * noise(p * scale + 17.0 * n);
   return sum;
 }
 
-/// 1 where `inside` > 0, 0 where it is below -width, smooth between.
+/// Returns 1 where `inside` > 0, 0 where it is below -width, and a smooth transition between.
 double edge(double inside, double width) { return smooth_step(inside / width + 1); }
 
 }  // namespace
@@ -54,7 +55,7 @@ double radial_field(const glm::dvec3& p) { return std::max(0.0, 1 - glm::length(
 
 double head_field(const glm::dvec3& p) {
   const double rough = octaves(p, 12, 2);
-  // Distances in units of half the volume's side, valid near the surfaces.
+  // Distances are in units of half the volume's side, and valid near the surfaces.
   const double wall = 0.88 * (1 - std::hypot((p.x - 0.03 * p.z) / 0.92, (p.y + 0.04 * p.z) / 0.85));
   const double in_case = edge(wall, 0.02) * edge(0.075 - wall, 0.02);
   const glm::dvec3 q = (p - glm::dvec3(0, 0.03, 0.1)) / glm::dvec3(0.57, 0.68, 0.71);
