@@ -13,7 +13,7 @@ namespace tessera::gl {
 Buffer::~Buffer() { release(); }
 
 void Buffer::release() {
-  if (name_ != 0) context_->gl().DeleteBuffers(1, &name_);  // also unmaps it
+  if (name_ != 0) context_->gl().DeleteBuffers(1, &name_);  // also unmaps the buffer
   name_ = 0;
   bytes_ = 0;
   mapped_ = nullptr;
@@ -77,7 +77,7 @@ void Fence::wait() {
     const GLenum answer = context_->gl().ClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, second);
     context_->check("waiting for the device");
     if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) break;
-    // A software device may need long for a large batch; a lost one reports it, or never signals.
+    // A software device may need a long time for a large batch. A device that was lost reports that, or never signals.
     if (answer == GL_WAIT_FAILED || waited >= 600)
       throw scene::Error(
           scene::ErrorCode::system_failure,

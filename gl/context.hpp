@@ -10,11 +10,11 @@
 
 namespace tessera::gl {
 
-/// An OpenGL 4.5 core context without a window, current on the thread that opened it until that thread destroys it.
-/// Only that thread may use it and objects created in it.
+/// An OpenGL 4.5 core context without a window. It is current on the thread that opened it until that thread destroys
+/// it. Only that thread may use the context and the objects created in it.
 ///
-/// Robust where the platform supports it: after a device reset, check() throws instead of commands silently doing
-/// nothing.
+/// The context is robust where the platform supports that: after a device reset, check() throws, instead of commands
+/// having no effect without an error.
 class Context {
  public:
   virtual ~Context() = default;
@@ -22,14 +22,14 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   [[nodiscard]] const Functions& gl() const { return gl_; }
-  /// "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// Name of platform and device: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Whether it renders on the CPU.
+  /// Whether the context renders on the CPU.
   [[nodiscard]] bool software() const { return software_; }
   [[nodiscard]] int limit(GLenum which) const;
 
-  /// Throws Error(system_failure) in one line if the context was lost, the device is out of memory, or a command was
-  /// refused since the last check. `doing` names the current activity: "sorting".
+  /// Throws Error(system_failure) with a message of one line if the context was lost, the device is out of memory, or a
+  /// command was refused since the last check. `doing` names the current activity: "sorting".
   void check(const char* doing) const;
 
   /// For tests: makes check() report this fault from now on (GL_CONTEXT_LOST, GL_OUT_OF_MEMORY).
@@ -48,11 +48,11 @@ class Context {
   GLenum pretended_ = GL_NO_ERROR;
 };
 
-/// Opens a context on the calling thread. Throws Error(system_failure) in one line that names what is missing: the
-/// library, a device, OpenGL 4.5.
+/// Opens a context on the calling thread. Throws Error(system_failure) with a message of one line that names what is
+/// missing: the library, a device, OpenGL 4.5.
 std::unique_ptr<Context> open_context(Platform platform, const EglDevice& device = {});
 
-/// The implementations; called only by open_context().
+/// The implementations of open_context(), which alone may call them.
 std::unique_ptr<Context> open_osmesa();
 std::unique_ptr<Context> open_egl(const EglDevice& device);
 

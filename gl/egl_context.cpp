@@ -26,8 +26,8 @@ bool has(const char* extensions, std::string_view name) {
   return false;
 }
 
-/// A device's context without a surface (EGL_EXT_platform_device, EGL_KHR_surfaceless_context): needs no display
-/// server.
+/// A context on a device without a surface (EGL_EXT_platform_device, EGL_KHR_surfaceless_context), which does not need
+/// a display server.
 class EglContext final : public Context {
  public:
   explicit EglContext(const EglDevice& wanted)
@@ -36,8 +36,8 @@ class EglContext final : public Context {
     const EGLDeviceEXT device = choose(wanted);
     const auto get_display = function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     display_ = get_display(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
-    // Displays belong to the process, one per device, and stay open: terminating one would terminate those of other
-    // contexts.
+    // There is one display per device in a process, and it stays open: terminating it would terminate the display of
+    // other contexts on the same device.
     if (display_ == EGL_NO_DISPLAY || function<PFNEGLINITIALIZEPROC>("eglInitialize")(display_, nullptr, nullptr) == 0)
       throw no_egl(fmt::format("device {} cannot be opened", number_));
     const char* const extensions = function<PFNEGLQUERYSTRINGPROC>("eglQueryString")(display_, EGL_EXTENSIONS);
@@ -53,7 +53,7 @@ class EglContext final : public Context {
     attributes.push_back(EGL_NONE);
     const auto create = function<PFNEGLCREATECONTEXTPROC>("eglCreateContext");
     context_ = create(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
-    if (context_ == EGL_NO_CONTEXT && attributes.size() > 7) {  // some support robustness only for OpenGL ES
+    if (context_ == EGL_NO_CONTEXT && attributes.size() > 7) {  // some drivers support robustness only for OpenGL ES
       attributes.resize(6);
       attributes.push_back(EGL_NONE);
       context_ = create(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());

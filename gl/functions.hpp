@@ -67,7 +67,8 @@ namespace tessera::gl {
   X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
   X(PFNGLVIEWPORTPROC, Viewport)
 
-/// OpenGL's functions without their prefix, as loaded from a context: `gl.DispatchCompute(...)` is glDispatchCompute.
+/// OpenGL's functions without the prefix `gl`, as loaded from a context: `gl.DispatchCompute(...)` is
+/// glDispatchCompute.
 struct Functions {
 #define TESSERA_GL_MEMBER(type, name) type name = nullptr;
   TESSERA_GL_FUNCTIONS(TESSERA_GL_MEMBER)

@@ -5,14 +5,14 @@
 
 namespace tessera::gl {
 
-/// A shared library opened at run time. It is never closed: drivers keep threads and thread-local memory whose code
-/// must stay loaded.
+/// A shared library opened at run time. It is never closed, because drivers keep threads and thread-local memory whose
+/// code must stay loaded.
 class Library {
  public:
   /// Throws Error(system_failure) naming the library and the package to install.
   Library(const char* file, const char* what, const char* package);
 
-  /// A function of the library; throws Error(system_failure) if it is missing.
+  /// Returns a function of the library. Throws Error(system_failure) if it is missing.
   template <class Function>
   Function* function(const char* name) const {
     return reinterpret_cast<Function*>(symbol(name));

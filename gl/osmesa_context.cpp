@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gl/context.hpp"
 
-// Must follow context.hpp: this includes gl.h, after which glcorearb.h would omit their common declarations.
+// Must follow context.hpp: this header includes gl.h, after which glcorearb.h would omit declarations that both headers
+// have.
 #include <GL/osmesa.h>
 
 #include <array>
@@ -12,8 +13,8 @@
 namespace tessera::gl {
 namespace {
 
-/// Mesa's off-screen interface: a software renderer that draws into memory of ours. That is a single pixel, because all
-/// drawing here uses framebuffer objects.
+/// Mesa's off-screen interface: a software renderer that draws into memory of the caller. Here that memory is a single
+/// pixel, because all drawing uses framebuffer objects.
 class OsmesaContext final : public Context {
  public:
   OsmesaContext()

@@ -3,21 +3,22 @@
 
 #include <optional>
 
-/// How a caller selects a device; needs no OpenGL headers.
+/// The selection of a device by a caller; does not need OpenGL headers.
 namespace tessera::gl {
 
-/// The source of a context. Both libraries are opened at run time; neither needs a display server.
+/// How a context is created. The library of either platform is opened at run time; neither platform needs a display
+/// server.
 enum class Platform {
   osmesa,  ///< Mesa in software, in this process
   egl      ///< a device without a surface: a GPU, or Mesa's software device
 };
 
-/// Selects one of EGL's devices. Numbers are EGL's own order.
+/// Selects one of EGL's devices. Devices are numbered in EGL's own order.
 struct EglDevice {
   std::optional<int> number;      ///< this device
-  std::optional<int> local_rank;  ///< else: hardware devices round-robin by this rank (software ones if there are none)
+  std::optional<int> local_rank;  ///< else: round-robin over hardware devices (over software devices if there are none)
   bool hardware_only = false;     ///< refuse software devices
-  // If none is set: the first hardware device, else the first device.
+  // If none of the members is set, the first hardware device is used, or else the first device.
 };
 
 }  // namespace tessera::gl

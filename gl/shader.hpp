@@ -17,13 +17,14 @@ struct ShaderSource {
   std::string_view text;
 };
 
-/// One stage of a program, concatenated from files. The version line precedes them.
+/// One stage of a program: the concatenation of several files. The version line precedes them.
 struct Stage {
   GLenum kind;  ///< GL_COMPUTE_SHADER, GL_VERTEX_SHADER, GL_FRAGMENT_SHADER
   std::vector<ShaderSource> files;
 };
 
-/// A linked program. Throws Error(system_failure) in one line that names file and line of the compiler's first error.
+/// A linked program. The constructor throws Error(system_failure) with a message of one line that names file and line
+/// of the compiler's first error.
 class Program {
  public:
   Program(const Context& context, const std::vector<Stage>& stages);
@@ -32,7 +33,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void use() const { gl_->UseProgram(name_); }
-  /// Sets uniforms by their layout(location).
+  /// Sets a uniform, given its layout(location).
   void set(GLint location, GLuint value) const { gl_->ProgramUniform1ui(name_, location, value); }
   void set(GLint location, GLint value) const { gl_->ProgramUniform1i(name_, location, value); }
   void set(GLint location, GLfloat value) const { gl_->ProgramUniform1f(name_, location, value); }
@@ -42,9 +43,9 @@ class Program {
   GLuint name_ = 0;
 };
 
-/// The first error of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12) : error
-/// ...", others "ERROR: 0:12: ...", with lines counted through the version line and all files (Mesa does not support
-/// #line FILE).
+/// Returns the first error of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12)
+/// : error ...", other drivers "ERROR: 0:12: ...". Their lines are counted through the version line and all files (Mesa
+/// does not support #line FILE).
 std::string first_complaint(std::string_view log, const std::vector<ShaderSource>& files);
 
 }  // namespace tessera::gl

@@ -7,7 +7,7 @@
 
 namespace tessera::gl {
 
-/// A 2D texture without filtering, which grows; reserve() discards the contents if it must reallocate.
+/// A 2D texture without filtering that can grow. reserve() discards the contents if it must reallocate.
 class Texture {
  public:
   Texture(const Context& context, GLenum format) : context_(&context), format_(format) {}
@@ -15,8 +15,8 @@ class Texture {
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
 
-  /// Ensures at least this size; both at most GL_MAX_TEXTURE_SIZE. Throws Error(system_failure) if the device is out of
-  /// memory. Returns true if it is a new texture.
+  /// Ensures at least this size; width and height may be at most GL_MAX_TEXTURE_SIZE. Throws Error(system_failure) if
+  /// the device is out of memory. Returns true if a new texture was created.
   bool reserve(int width, int height);
   [[nodiscard]] GLuint name() const { return name_; }
   [[nodiscard]] int width() const { return width_; }
@@ -30,7 +30,7 @@ class Texture {
   int width_ = 0, height_ = 0;
 };
 
-/// Textures as render targets, the first as attachment 0 and so on.
+/// Textures as render targets: the first is attachment 0, the second attachment 1 and so on.
 class Framebuffer {
  public:
   explicit Framebuffer(const Context& context);
@@ -38,7 +38,7 @@ class Framebuffer {
   Framebuffer(const Framebuffer&) = delete;
   Framebuffer& operator=(const Framebuffer&) = delete;
 
-  /// Throws Error(system_failure) if the device cannot render to these.
+  /// Throws Error(system_failure) if the device cannot render to these textures.
   void attach(std::initializer_list<const Texture*> textures);
   void bind() const { context_->gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, name_); }
   void clear(int attachment, const float (&value)[4]) const {

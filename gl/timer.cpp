@@ -9,8 +9,8 @@ namespace tessera::gl {
 
 StageTimer::StageTimer(const Context& context, scene::Trace* trace) : context_(&context), trace_(trace) {
   if (trace_ == nullptr) return;
-  // Rows are threads: the device uses the number of a thread that does nothing else. It lives as long as the timer,
-  // because the number of an ended thread may be reused.
+  // The rows of the trace are threads, so the device needs the number of a thread that does nothing else. That thread
+  // lives as long as the timer, because the number of an ended thread may be reused.
   row_thread_ = scene::start_thread([this] {
     row_ = trace_->thread_number();
     numbered_.release();

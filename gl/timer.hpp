@@ -10,10 +10,10 @@
 
 namespace tessera::gl {
 
-/// Device times of stages of commands (timer queries), for the trace. Does nothing if `trace` is null.
+/// Measures device times of stages of commands by timer queries, for the trace. Does nothing if `trace` is null.
 ///
-/// A device works in parallel with the thread that feeds it, so its spans have a row of their own and count no CPU
-/// time.
+/// A device works in parallel with the thread that sends its commands, so the device's spans have a row of their own
+/// and do not count CPU time.
 class StageTimer {
  public:
   StageTimer(const Context& context, scene::Trace* trace);
@@ -21,12 +21,12 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
-  /// Later commands belong to no stage until the first record().
+  /// Begins a frame. Commands before the first record() do not belong to any stage.
   void begin(std::int32_t frame);
-  /// Attributes the commands since the last call to `stage`, a string literal, in `passes` passes over the lists: the
-  /// trace records passes as messages to the device.
+  /// Attributes the commands since the last call to `stage`, a string literal. The stage made `passes` passes over the
+  /// lists, which the trace records as messages to the device.
   void record(const char* stage, std::uint32_t passes = 0);
-  /// Adds the spans to the trace; the device must have finished the commands.
+  /// Adds the spans to the trace. The device must have finished the commands.
   void collect();
 
  private:
@@ -42,7 +42,7 @@ class StageTimer {
   std::binary_semaphore numbered_{0}, ended_{0};
   std::uint32_t row_ = 0;
   std::int32_t frame_ = -1;
-  double offset_us_ = 0;  ///< from the device's clock to the trace's
+  double offset_us_ = 0;  ///< what to add to the device's clock to get the trace's
   std::vector<GLuint> queries_;
   std::size_t used_ = 0;
   std::vector<Stage> recorded_;
