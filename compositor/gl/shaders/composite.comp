@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One list of fragments a thread, front to back. Sums are double: a hundred thousand terms of 1e-9 are not lost, and the
-// transmittance is the exponential of one sum, not a product of many roundings.
+// Composites lists of fragments front to back, one list per thread. Sums are double, so that a hundred thousand terms
+// of 1e-9 are not lost. The transmittance is the exponential of one sum, because a product would accumulate rounding
+// errors.
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer Fragments { vec4 fragments[]; };
 layout(std430, binding = 1) readonly buffer Sorted0 { uvec4 sorted_0[]; };
 layout(std430, binding = 2) readonly buffer Sorted1 { uvec4 sorted_1[]; };
-layout(std430, binding = 4) readonly buffer Lists { uvec4 lists[]; };  // first element, number of them, which of the two
+layout(std430, binding = 4) readonly buffer Lists { uvec4 lists[]; };  // first element, count, which of the two
 struct Light {
   vec4 light;   // red, green, blue, optical depth
-  uvec4 first;  // the first element with optical depth; all bits: none
+  uvec4 first;  // the first element with optical depth; all bits set: none
 };
 layout(std430, binding = 5) writeonly buffer Lights { Light lights[]; };
 
-layout(location = 0) uniform uint first_list;  // in elements of `lists`
+layout(location = 0) uniform uint first_list;  // index in `lists`
 layout(location = 1) uniform uint list_count;
-layout(location = 2) uniform float least_transmittance;  // behind less nothing shows
+layout(location = 2) uniform float least_transmittance;  // if less remains, the elements behind are not visible
 
 void main() {
   if (gl_GlobalInvocationID.x >= list_count) return;

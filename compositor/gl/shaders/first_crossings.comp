@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where light begins, of lists whose first fragment to show was rasterized here: the host knows no depths of it.
+// Computes where light begins in lists whose first visible fragment was rasterized on the device: the host does not
+// have the depths of these fragments.
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer Keys { uvec4 keys[]; };      // by element
-layout(std430, binding = 1) readonly buffer Scalars { vec2 scalars[]; };  // likewise: at front and back
-layout(std430, binding = 4) readonly buffer Lists { uvec4 lists[]; };    // as composite.comp; last: how many were given
+layout(std430, binding = 0) readonly buffer Keys { uvec4 keys[]; };      // one per element
+layout(std430, binding = 1) readonly buffer Scalars { vec2 scalars[]; };  // one per element: scalars at front and back
+layout(std430, binding = 4) readonly buffer Lists { uvec4 lists[]; };    // as in composite.comp; last: fragments given
 struct Light {
   vec4 light;
   uvec4 first;
@@ -18,7 +19,7 @@ float extinction(uint interval, float s) {
   return at(half_extinction_slope, interval) * (s - at(base, interval)) + at(half_extinction, interval);
 }
 
-// integrals::SegmentIntegrator::first_visible().
+// Computes integrals::SegmentIntegrator::first_visible().
 float first_visible(float front, float back) {
   if (front == back) return 0.0;
   const bool up = back >= front;

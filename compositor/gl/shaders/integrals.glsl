@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The integral of one ray segment, in float; integrals/integrate_lanes-inl.h (exact) and integrals/integrate_sampled.cpp
-// explain it. Light is {red, green, blue, optical depth}, premultiplied and not dimmed by what lies before.
+// The integral of one ray segment, in float. integrals/integrate_lanes-inl.h (exact) and
+// integrals/integrate_sampled.cpp explain the methods. Light is {red, green, blue, optical depth}, premultiplied,
+// without the attenuation by matter in front of the segment.
 
-// LaneTable: columns of `stride` numbers.
+// The numbers of a LaneTable, in columns of `stride` numbers.
 layout(std430, binding = 3) readonly buffer Table { float table[]; };
 layout(location = 10) uniform uint stride;
 layout(location = 11) uniform uint knot_count;
 layout(location = 12) uniform uint independent;
-layout(location = 13) uniform uint samples;  // 0: exact
+layout(location = 13) uniform uint samples;  // number of samples; 0: exact integration
 
 const uint edge = 0u, base = 1u, half_extinction = 2u, half_extinction_slope = 3u, red = 4u, green = 6u, blue = 8u;
 
 float at(uint column, uint interval) { return table[column * stride + interval]; }
 
-// The interval in which a ray at s goes on: up (or level) the one above a knot at s, down the one below.
+// Returns the interval between knots in which a ray at scalar s continues. If s is a knot, this is the interval above
+// the knot if the scalar increases or is constant, otherwise the one below.
 uint locate(float s, bool up) {
-  uint low = 0u, high = knot_count;  // of knots passed
+  uint low = 0u, high = knot_count;  // bounds of the number of knots passed
   while (low < high) {
     const uint middle = (low + high) / 2u;
     const float knot = at(edge, middle + 1u);
@@ -69,7 +71,7 @@ StretchLight stretch_light(Stretch s) {
 }
 
 vec4 integrate_exact(float length, float front, float back) {
-  // Long sums in float drift: sums of sixteen pieces go into the whole.
+  // Rounding errors of long sums in float accumulate, so sums of sixteen pieces are added to the total.
   float transmittance = 1.0, since_transmittance = 1.0, depth_sum = 0.0, since_depth = 0.0;
   vec3 color = vec3(0.0), since_color = vec3(0.0);
   if (!(length > 0.0)) return vec4(0.0);
@@ -89,7 +91,7 @@ vec4 integrate_exact(float length, float front, float back) {
     const float depth = s.depth_front + s.depth_back;
     float weight = 0.0, moment = 0.0, t = since_transmittance;
     if (depth > step_depth) {
-      // Steps of one optical depth until no more than one is left, or nothing that shows.
+      // Steps of one unit of optical depth, until at most one unit remains or the remainder is not visible.
       s.depth_front = min(s.depth_front, most_depth);
       s.depth_back = min(s.depth_back, most_depth);
       while (s.depth_front + s.depth_back > step_depth && t * transmittance >= transmittance_left) {
@@ -129,14 +131,14 @@ vec4 integrate_exact(float length, float front, float back) {
   return vec4(color, depth_sum);
 }
 
-// 1 - exp(-x) for x >= 0, which loses nothing where x is small.
+// Returns 1 - exp(-x) for x >= 0, without cancellation for small x.
 float one_minus_exp(float x) {
   if (x > 0.3) return 1.0 - exp(-x);
   return x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0))))));
 }
 
-// `sampled:Ns` (Juliachs et al. 2007, 4.3): Ns samples at the middles of Ns steps. The print has dx = 1 / Ns; its own
-// remark that null elements, of length 0, add nothing needs l / Ns.
+// `sampled:Ns` (Juliachs et al. 2007, 4.3): Ns samples at the middles of Ns steps. The paper has dx = 1 / Ns, but also
+// states that null elements, of length 0, do not contribute, which requires dx = length / Ns.
 vec4 integrate_sampled(float length, float front, float back) {
   const float dx = length / float(samples), change = back - front;
   vec3 color = vec3(0.0);

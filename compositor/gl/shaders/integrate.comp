@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every ray segment becomes its light, in place: {length, scalar front, scalar back, -1} to {red, green, blue, optical
-// depth}. Runs are light already: their fourth number is not negative.
+// Replaces every ray segment by its light, in place: {length, scalar front, scalar back, -1} becomes {red, green, blue,
+// optical depth}. Runs of segments are light already: their fourth number is not negative.
 layout(local_size_x = 256) in;
 
 layout(std430, binding = 0) buffer Fragments { vec4 fragments[]; };

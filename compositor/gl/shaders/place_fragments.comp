@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fragments that were given, to their places in lists that leave room for those that the device rasterizes.
+// Moves fragments that were given to their places in lists, which have space for the fragments that the device
+// rasterizes.
 layout(local_size_x = 256) in;
 
 layout(std430, binding = 0) readonly buffer GivenKeys { uvec4 given_keys[]; };  // {front, back, tie, place}

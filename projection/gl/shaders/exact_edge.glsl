@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On which side of the edge a -> b does a ray pass, exactly: projection/edge_sign.hpp. Corners lie where the tie rule
-// sees them, at whole multiples of 2^-32 pixel, below 2^18 pixels from the ray: their differences are exact in doubles.
+// Decides exactly on which side of the edge a -> b a ray passes: projection/edge_sign.hpp. The positions of corners are
+// those of the tie rule, multiples of 2^-32 pixel, less than 2^18 pixels from the ray: their differences are exact in
+// doubles.
 
 struct Edge {
-  double size;  // |E|, E = a x b of the corners as the ray sees them
-  int side;     // sign of E, by the tie rule where it is zero; 0: the edge has no sides
+  double size;  // |E|, where E = a x b for corners relative to the ray
+  int side;     // sign of E, or if E is zero, by the tie rule; 0: the edge is a point
 };
 
-// |v| in units of 2^-32: low half, high half.
+// Returns |v| in units of 2^-32: the low half, then the high half.
 uvec2 whole(double v) {
   const double size = abs(v), pixels = floor(size);
   return uvec2(uint((size - pixels) * 4294967296.0lf), uint(pixels));
 }
 
-// 128 bits, the lowest first.
+// Returns the product, 128 bits, the lowest first.
 uvec4 product(uvec2 a, uvec2 b) {
   uint low_0, low_1, low_2, low_3, high_0, high_1, high_2, high_3, carry_0, carry_1, carry_2, carry_3, carry_4;
   umulExtended(a.x, b.x, high_0, low_0);
@@ -38,7 +39,7 @@ uvec4 sum(uvec4 a, uvec4 b) {
   return s;
 }
 
-// Of a >= b.
+// Returns a - b, for a >= b.
 uvec4 difference(uvec4 a, uvec4 b) {
   uint borrow_0, borrow_1, borrow_2, more_1, more_2;
   uvec4 d;
@@ -71,7 +72,7 @@ Edge exact_edge(dvec2 a, dvec2 b) {
     e = difference(p, q);
     side = p_sign;
   }
-  if (e == uvec4(0u)) {  // the ray meets the edge: shifted by (s, s^2), s next to nothing
+  if (e == uvec4(0u)) {  // the ray meets the edge, and is shifted by (s, s^2) for an infinitely small s
     const double along_x = a.y - b.y, along_y = b.x - a.x;
     side = int(along_x != 0.0lf ? sign(along_x) : sign(along_y));
   }
@@ -80,11 +81,12 @@ Edge exact_edge(dvec2 a, dvec2 b) {
   return Edge(size / (scale * scale), side);
 }
 
-// The same in double; side 0 where that does not tell.
+// Computes the edge in double; the side is 0 if rounding may have changed the sign.
 Edge edge(dvec2 a, dvec2 b) {
   const double p = a.x * b.y, q = b.x * a.y, e = p - q;
-  // Three roundings of 2^-53 each, or two: half of this. Rounded alike, products keep their order, and only a zero does
-  // not tell; where the compiler fuses one of them, anything below the bound may be wrong.
+  // The bound is twice the error of up to three roundings of 2^-53 each. If both products are rounded, they keep their
+  // order, and only a result of zero is uncertain; if the compiler fuses one of them with the difference, any result
+  // below the bound may have the wrong sign.
   const bool certain = abs(e) > 4.5e-16lf * (abs(p) + abs(q));
   return Edge(abs(e), certain ? (e > 0.0lf ? 1 : -1) : 0);
 }

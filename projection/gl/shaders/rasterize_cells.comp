@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells to ray segments: projection/gl/gl_rasterizer.hpp. Eight threads a cell, each every eighth pixel of its box.
+// Computes ray segments from cells: projection/gl/gl_rasterizer.hpp. Each cell has eight threads, each of which
+// processes every eighth pixel of the cell's box.
 layout(local_size_x = 64) in;
 const uint threads_a_cell = 8u;
 
@@ -7,7 +8,7 @@ struct Cell {
   double corners[16];  // x, y, depth, scalar of each
   uint tet, tet_high;
 };
-// What one dispatch works on: cells of one job.
+// The input of one dispatch: cells of one job.
 struct Part {
   double half_width, half_height, tangents_per_pixel;  // the last is 0 in orthographic views
   double key_origin, keys_per_depth;
@@ -24,7 +25,7 @@ layout(std430, binding = 6) readonly buffer Parts { Part parts[]; };
 
 layout(location = 0) uniform uint part_number;
 
-// Edges by their ends, and faces by their corners a < b < c and the edges bc, ac, ab.
+// The two ends of each edge; and for each face, its corners a < b < c and its edges bc, ac, ab.
 const ivec2 edge_ends[6] = ivec2[6](ivec2(0, 1), ivec2(0, 2), ivec2(0, 3), ivec2(1, 2), ivec2(1, 3), ivec2(2, 3));
 const ivec3 face_corners[4] = ivec3[4](ivec3(0, 1, 2), ivec3(0, 1, 3), ivec3(0, 2, 3), ivec3(1, 2, 3));
 const ivec3 face_edges[4] = ivec3[4](ivec3(3, 1, 0), ivec3(4, 2, 0), ivec3(5, 2, 1), ivec3(5, 4, 3));
@@ -33,19 +34,22 @@ dvec2 place[4];
 double depth[4], scalar[4], inverse_w[4];
 Edge edges[6];
 
-// A whole number of units where the transfer function has knots, as integrals::lane_scalar(); beyond, as it is.
+// Rounds to a whole number of units within the range of the transfer function's knots, like integrals::lane_scalar();
+// outside of that range, the number does not change.
 double rounded(double units) {
   return abs(units) < 1073741824.0lf ? floor(units + 0.5lf) : units;
 }
 
-// 1: the ray passes face f from the side from which its corners run clockwise; -1: from the other; 0: it does not.
+// Returns 1 if the ray passes face f from the side from which the corners of the face are in clockwise order, -1 if
+// from the other side, 0 if the ray does not pass the face.
 int passes(int f) {
   const int bc = edges[face_edges[f].x].side, ac = edges[face_edges[f].y].side, ab = edges[face_edges[f].z].side;
   if (bc == 0 || ac != -bc || ab != bc) return 0;
-  return (f & 1) == 0 ? bc : -bc;  // faces 0 and 2 turn outward
+  return (f & 1) == 0 ? bc : -bc;  // faces 0 and 2 are oriented outward
 }
 
-// Depth and scalar where the ray passes face f. Relative to corner c, so that a face of one value keeps it to the bit.
+// Returns depth and scalar where the ray passes face f. Computed relative to corner c, so that a face with a constant
+// scalar gives exactly that scalar.
 dvec2 crossing(int f) {
   const ivec3 corner = face_corners[f], opposite = face_edges[f];
   precise const double a = edges[opposite.x].size * inverse_w[corner.x], b = edges[opposite.y].size * inverse_w[corner.y],
@@ -83,12 +87,12 @@ void main() {
     const ivec2 at = first + ivec2(int(k) % box.x, int(k) / box.x);
     const dvec2 ray = dvec2(at) + 0.5lf;
     for (int i = 0; i < 4; ++i) place[i] = corners[i] - ray;
-    uint unsure = 0u;  // a bit an edge
+    uint unsure = 0u;  // one bit per edge
     for (int e = 0; e < 6; ++e) {
       edges[e] = edge(place[edge_ends[e].x], place[edge_ends[e].y]);
       if (edges[e].side == 0) unsure |= 1u << e;
     }
-    for (; unsure != 0u; unsure &= unsure - 1u) {  // hardly ever: one text of it, not six
+    for (; unsure != 0u; unsure &= unsure - 1u) {  // rare: a loop, so that the code occurs once and not six times
       const int e = findLSB(unsure);
       edges[e] = exact_edge(place[edge_ends[e].x], place[edge_ends[e].y]);
     }
@@ -107,7 +111,7 @@ void main() {
     const bool one_first = one.x <= other.x;
     const dvec2 front = one_first ? one : other, back = one_first ? other : one;
     const dvec2 tangent = (ray - dvec2(part.half_width, part.half_height)) * part.tangents_per_pixel;
-    const double slant = sqrt(1.0lf + dot(tangent, tangent));  // of the ray: length per depth
+    const double slant = sqrt(1.0lf + dot(tangent, tangent));  // length of the ray per unit of depth
     const vec2 ends = vec2(rounded(front.y), rounded(back.y));
     keys[element] = uvec4(key_of(front.x, part), key_of(back.x, part), cells[cell].tet, element);
     values[element] = vec4(float((back.x - front.x) * slant / part.length_unit), ends, -1.0);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One pass of bitonic sort over lists in a texture (Kipfer, Segal, Westermann, "UberFlow: A GPU-Based Particle Engine",
-// 2004; Juliachs et al. 2007, 4.3): every fragment reads its element and its partner, and keeps the one that belongs
-// there. A list of 2^log2_size elements takes one row, or several where it is longer than a row of the texture: phases
-// up to a row's length then sort it in parts, the later ones merge them.
+// 2004; Juliachs et al. 2007, 4.3): every fragment reads the element at its position and the partner of this element,
+// and keeps the one that belongs there. A list of 2^log2_size elements takes one row, or several rows if it is longer
+// than a row of the texture: phases up to the length of a row then sort the list in parts, and later phases merge
+// these.
 layout(binding = 0) uniform sampler2D segments;  // {scalar front, scalar back, length, z back}
 layout(binding = 1) uniform usampler2D ties;     // {tie, place in the unsorted list}
 
@@ -14,7 +15,7 @@ layout(location = 1) uniform uint log2_size;
 layout(location = 2) uniform uint phase;
 layout(location = 3) uniform uint step_in_phase;  // from `phase` down to 0
 
-// Decreasing distance; the print leaves the order of equal z_back open, here `tie` settles it.
+// Decreasing distance. The paper does not define the order of segments with equal z_back; here it is that of `tie`.
 bool farther(vec4 a, uvec2 a_tie, vec4 b, uvec2 b_tie) {
   if (a.w != b.w) return a.w > b.w;
   if (a_tie.x != b_tie.x) return a_tie.x > b_tie.x;
@@ -34,7 +35,7 @@ void main() {
   const vec4 other = texelFetch(segments, there, 0);
   const uvec2 other_tie = texelFetch(ties, there, 0).xy;
   const bool is_low = (element & distance) == 0u, decreasing = ((element >> (phase + 1u)) & 1u) == 0u;
-  // Equal elements (the null ones) stay where they are on both sides, so that none is lost.
+  // Equal elements (null elements) are not exchanged on either side, so that none is lost.
   const bool swap = is_low == decreasing ? farther(other, other_tie, segment, tie) : farther(segment, tie, other, other_tie);
   if (swap) {
     segment = other;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One pass over long lists: neighbouring sorted parts become one. Every element finds its place by itself: its own number
-// in its part and the number of elements before it in the other (a binary search).
+// One pass over long lists, which merges pairs of neighbouring sorted parts. The place of every element is computed
+// independently: the sum of its index in its own part and the number of elements of the other part that precede it,
+// which a binary search finds.
 layout(local_size_x = 256) in;
 
 layout(std430, binding = 0) readonly buffer From { uvec4 from[]; };
 layout(std430, binding = 1) writeonly buffer To { uvec4 to[]; };
-// A workgroup each: where the two parts begin, how long they are (the second may be empty), and which 256 elements of
-// them are this workgroup's.
+// One entry per workgroup: where the two parts begin, their lengths (the second may be empty), and which 256 of their
+// elements the workgroup processes.
 layout(std430, binding = 2) readonly buffer Merges { uvec4 merges[]; };
 
 layout(location = 0) uniform uint first_merge;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bitonic sort of short lists, or of pieces of long ones, in shared memory. A workgroup's 1024 slots hold 1024 / 2^n
-// lists of up to 2^n elements: one dispatch is for lists that need the same n, so that no list is padded beyond the next
-// power of two, and none takes more steps than its length asks for.
+// Bitonic sort of short lists, or of pieces of long lists, in shared memory. The 1024 slots of a workgroup contain
+// 1024 / 2^n lists of up to 2^n elements. All lists of a dispatch need the same n, so that no list is padded beyond the
+// next power of two, and none takes more steps than its length requires.
 layout(local_size_x = 256) in;
 
 layout(std430, binding = 0) readonly buffer Unsorted { uvec4 unsorted[]; };

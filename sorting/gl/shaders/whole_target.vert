@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One triangle that covers the viewport; instances number the columns that are composited.
+// Draws one triangle that covers the viewport. The number of the instance is that of the column that is composited.
 layout(location = 0) flat out int column;
 
 void main() {
