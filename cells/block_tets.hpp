@@ -75,7 +75,7 @@ class BlockCells {
   const std::string& source_;
   std::array<CellShape, 256> shapes_;
   CurvedCells curved_;
-  std::uint64_t most_curved_tets_;  ///< of this block
+  std::uint64_t most_curved_tets_;  ///< largest number of tets of the curved cells
   mutable std::atomic<std::uint64_t> curved_tets_{0};
 };
 

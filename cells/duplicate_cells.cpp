@@ -56,8 +56,8 @@ class CellKeys {
     });
   }
 
-  /// Calls `begin()` for each range of cells, from several threads, and then the function that it returned with `(first
-  /// tet, tet after the last, key)` for each cell of the range.
+  /// Calls `begin()` for each range of cells, from several threads. Then calls the function that `begin()` returned
+  /// with `(first tet, tet after the last, key)` for each cell of the range.
   template <class Begin>
   void each(const Begin& begin) const {
     const std::size_t tets = mesh_.tets.size();

@@ -19,7 +19,7 @@ struct MeshBlocks {
   std::vector<std::string> notes;
   std::string format;
   std::vector<std::string> block_names{};    ///< names of all blocks, including those not chosen; empty: as in `blocks`
-  std::vector<std::string> surface_names{};  ///< of surfaces left out because the file has a volume
+  std::vector<std::string> surface_names{};  ///< names of surfaces that are left out because the file has a volume
   std::vector<FieldSummary> fields{};        ///< all fields of the file, if the reader loads only the chosen field
   scene::TimeStepRead time_step{};
   bool xy_in_degrees = false;  ///< x and y are degrees, z is a length

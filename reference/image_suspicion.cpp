@@ -17,7 +17,7 @@ namespace tessera::reference {
 namespace {
 
 using Colour = std::array<float, 4>;
-constexpr float broken = 1e30f;  // of pixels that are not finite
+constexpr float broken = 1e30f;  // score of pixels that are not finite
 
 class Picture {
  public:

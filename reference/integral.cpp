@@ -10,7 +10,7 @@
 namespace tessera::reference {
 namespace {
 
-constexpr double largest_step = 0.5;    // of optical depth
+constexpr double largest_step = 0.5;    // in units of optical depth
 constexpr double opaque_depth = 41.45;  // exp(-41.45) < 1e-18
 
 double mixed(double a, double b, double u) { return a + (b - a) * u; }

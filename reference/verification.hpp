@@ -25,7 +25,7 @@ struct Tally {
 ///         may contain (most_excused()). All pixels chosen as suspicious may be excused, because they were chosen where
 ///         excuses are likely.
 struct Verification {
-  Judgement judgement;                     ///< of all checked pixels; rms_error: an estimate from the random ones
+  Judgement judgement;                     ///< all checked pixels; rms_error: estimated from the random ones
   std::optional<double> bound;             ///< no value: errors are reported, but there is no promise to check
   Tally random;                            ///< all checked pixels, if these are the whole image
   std::array<Tally, suspicions> chosen{};  ///< indexed by Suspicion

@@ -13,8 +13,8 @@ namespace tessera::reference {
 namespace {
 
 constexpr int most_pieces = 4000;
-constexpr double smallest_piece = 0x1p-26;  // of the face
-constexpr double edge_tolerance = 1e-9;     // of a piece
+constexpr double smallest_piece = 0x1p-26;  // fraction of the face
+constexpr double edge_tolerance = 1e-9;     // fraction of a piece
 
 /// Whether a piece has no crossing that counts: all control points are on one side of the ray, by more than `rounding`,
 /// or the piece is a point, or a line along the ray, within that tolerance.

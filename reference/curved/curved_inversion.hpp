@@ -29,7 +29,7 @@ class InnerPath {
 
  private:
   /// Follows the ray from the place known at depth `from` to depth `to`. If a single step does not end in the domain,
-  /// the way is halved. In a folded cell, where even that may fail, the function returns the last place after a few
+  /// the step is halved. In a folded cell, where even that may fail, the function returns the last place after a few
   /// attempts.
   [[nodiscard]] glm::dvec3 follow(double from, glm::dvec3 place, double to, int halvings);
 

@@ -56,7 +56,7 @@ struct Paint {
 /// A triangle of a surface in the view.
 struct ProjectedTriangle {
   std::array<Corner, 3> corners;
-  glm::dvec3 normal;  ///< of any length
+  glm::dvec3 normal;  ///< normal of any length
   std::size_t paint;
 };
 
