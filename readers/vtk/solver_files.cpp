@@ -250,7 +250,8 @@ bool asks_for(std::string_view field, const std::string& name) {
   return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
 }
 
-/// Disables variables that have no file at the requested step. Throws if the geometry is missing.
+/// Disables variables that have no file at the requested step. Throws if the geometry or the requested field is
+/// missing.
 void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& described, double time,
                        const std::string& source, const nlohmann::json& request, std::vector<std::string>& notes) {
   for (const EnsightCase::Missing& gone : described.missing(time)) {

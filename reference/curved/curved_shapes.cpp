@@ -126,8 +126,8 @@ Function towards_apex(std::function<double(double x, double y, double w)> f) {
   return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
 }
 
-/// Returns the functions that both quadratic pyramids have. They are quadratic on every edge, and include all
-/// polynomials of second degree, with xy, except that x^2 + y^2 is rational.
+/// Returns the functions that both quadratic pyramids have. They are quadratic on every edge. With the functions that
+/// each pyramid adds, they are complete to second degree, except that x^2 + y^2 is rational.
 std::vector<Function> quadratic_pyramid_space() {
   std::vector<Function> space;
   for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
