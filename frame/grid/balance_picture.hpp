@@ -11,26 +11,27 @@
 #include "volume/split/image_split.hpp"
 #include "volume/split/voxel_box.hpp"
 
-/// The images of tessera::BalancePictures.
+/// How tessera::BalancePictures draws its images.
 namespace tessera::frame {
 
-/// Draws the outlines of `bricks` (low and high corners in index space) over the image, dimmed, on black; each pixel of
-/// a line has the colour of the process that rendered it. White lines separate the rectangles.
+/// Dims the image, blends it with black, and draws the outlines of `bricks` over it (low and high corners of each brick
+/// in index space). Each pixel of a line has the colour of the process that rendered this pixel. White lines separate
+/// the rectangles.
 void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
                  std::span<const std::array<glm::dvec3, 2>> bricks, const volume::ImageSplit& split);
 
-/// The same for sort-last: each brick has the colour of the process whose part of the volume contains it, and white
-/// lines outline the parts.
+/// The same for sort-last. Each brick has the colour of the process whose part of the volume contains the brick, and
+/// white lines outline the parts.
 void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
                  std::span<const std::array<glm::dvec3, 2>> bricks, std::span<const volume::VoxelBox> parts);
 
-/// The outlines of sort-last's parts on black, coloured as in cost_picture() from blue on by each part's CPU seconds
-/// relative to the most expensive part. Opaque.
+/// Draws the outlines of sort-last's parts on black. The colour of a part shows its CPU seconds relative to the most
+/// expensive part, on the scale of cost_picture() from blue on. The image is opaque.
 scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
                            std::span<const volume::VoxelBox> parts, std::span<const double> seconds);
 
-/// The cost map at the image's size: from black (no work) over blue, red and yellow to white at the most expensive
-/// pixel; white lines separate the rectangles. Opaque.
+/// Draws the cost map at the size of the image. Colours range from black (no work) over blue, red and yellow to white
+/// (the most expensive pixel). White lines separate the rectangles. The image is opaque.
 scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, const volume::ImageSplit& split);
 
 }  // namespace tessera::frame

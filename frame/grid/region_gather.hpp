@@ -9,11 +9,11 @@
 
 namespace tessera::frame {
 
-/// Sends the pixels of the part's rectangles to rank 0, with their error bounds if it has any.
+/// Sends the pixels of the part's rectangles to rank 0, with their error bounds if the part has error bounds.
 void send_region(exchange::Transport& transport, const VolumePart& part);
 
-/// Gathers all ranks' rectangles on rank 0, one frame after the other. Rectangles of later frames are kept until their
-/// frame is gathered.
+/// Gathers all ranks' rectangles on rank 0, one frame after the other. Rectangles that arrive before their frame is
+/// gathered are kept until then.
 class RegionGather {
  public:
   RegionGather(exchange::Transport& transport, scene::Trace* trace) : transport_(transport), trace_(trace) {}
@@ -31,7 +31,7 @@ class RegionGather {
   std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< by frame
 };
 
-/// Reports pixels that are final on rank 0 to `watch`; if it throws FrameStopped, the frame stops.
+/// Reports pixels that are final on rank 0 to `watch`. If `watch` throws FrameStopped, the frame stops.
 void report_region(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished);
 
 }  // namespace tessera::frame

@@ -7,9 +7,9 @@
 
 namespace tessera::frame {
 
-/// The ranges of a volume's cells, scanned by all ranks together: each reads its share of whole layers of cells, in the
-/// order of ranks along k, and sends the result to all others. The result is that of one process, on every rank. If
-/// there are fewer layers than ranks, some ranks read nothing.
+/// Scans the value ranges of a volume's cells with all ranks together. Each rank reads its share of whole layers of
+/// cells (the shares follow each other along k in the order of ranks) and sends the result to all others. Returns on
+/// every rank what one process would compute. If there are fewer layers than ranks, some ranks read nothing.
 ///
 /// Collective: the same volume on every rank, from each rank's own source. Throws the run's error, or this rank's (a
 /// source that cannot be read), which the caller passes to transport.fail().

@@ -6,7 +6,8 @@
 
 namespace tessera::frame {
 
-/// scene::label_values() computed on rank 0 and sent to every rank. Collective. Throws what reading samples throws.
+/// Computes scene::label_values() on rank 0 and sends the result to every rank. Collective. Throws the errors of
+/// reading samples.
 scene::LabelValues shared_labels(exchange::Transport& transport, const scene::SampleSource& source, bool stated);
 
 }  // namespace tessera::frame

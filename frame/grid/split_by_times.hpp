@@ -11,45 +11,48 @@
 
 namespace tessera::frame {
 
-/// The times of a rank's part of a frame.
+/// The times that a rank needed for its part of a frame.
 struct CastTimes {
-  bool whole = true;          ///< it was not stopped
-  std::uint64_t process = 0;  ///< of the rank
-  double cpu_seconds = 0;     ///< of the process, for the frame
+  bool whole = true;          ///< the part was not stopped
+  std::uint64_t process = 0;  ///< number that identifies the rank's process on all machines
+  double cpu_seconds = 0;     ///< CPU seconds of the process for this frame
   std::vector<volume::TileTime> tiles;
 };
 
-/// Rank 0's part of `Balance::learned`: splits a frame by the times of the tiles in earlier frames, if its view is near
-/// theirs.
+/// Rank 0's part of `Balance::learned`: splits a frame by the times that its tiles took in earlier frames, if the view
+/// is close to the views of those frames.
 ///
-/// A split gives each process the same time, for its tiles and for everything else that it does for a frame, as in
-/// earlier frames. Rank 0 also gathers, and so gets fewer tiles. While a view moves, the tiles of a rank take more or
-/// less time than predicted, in a similar way from frame to frame; this deviation is learned too.
+/// A split gives all processes the same predicted time. The prediction covers the tiles of a process and everything
+/// else that it does for a frame, as measured in earlier frames. Rank 0 also gathers the pixels, and so gets fewer
+/// tiles. While a view moves, the tiles of a rank take more or less time than predicted, and the deviation is similar
+/// from frame to frame; this deviation is learned too.
 class SplitByTimes {
  public:
-  /// Learns from the times of the frame of `job`, by rank; `box` contains the volume.
+  /// Learns from the times of the frame of `job`; `ranks` has the times of each rank. `box` contains the volume.
   void learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks);
 
-  /// The split of a frame; none if too little is known.
+  /// Returns the split of a frame, or nothing if too little has been learned.
   [[nodiscard]] std::optional<volume::ImageSplit> find(const VolumeJob& job, const scene::Box& box);
 
-  /// The share of the tiles that each rank should get if find() returns none. Empty if nothing is known.
+  /// The share of the tiles that each rank should get if find() returns nothing. Empty if nothing has been learned.
   [[nodiscard]] std::vector<double> weights() const;
 
  private:
-  /// Learns `missed_` from the time of each rank's tiles, nanoseconds.
+  /// Learns `missed_` from the time that the tiles of each rank took, in nanoseconds.
   void compare_with_prediction(const std::vector<double>& tiles_of);
 
   std::optional<volume::TileCosts> costs_;
-  int pictures_ = 0;                ///< frames learned from
-  double tiles_ = 0;                ///< nanoseconds of the last frame
-  std::vector<double> other_work_;  ///< nanoseconds of each rank, excluding its tiles
-  std::vector<double> predicted_;   ///< predicted nanoseconds of each rank's tiles in the last split; empty: none
-  std::vector<double> missed_;      ///< how much each rank's share of the time of all tiles exceeds the prediction
+  int pictures_ = 0;                ///< number of frames from which it has learned
+  double tiles_ = 0;                ///< time of all tiles in the last frame, in nanoseconds
+  std::vector<double> other_work_;  ///< time of each rank for other work than its tiles, in nanoseconds
+  std::vector<double>
+      predicted_;               ///< predicted time of each rank's tiles in the last split, in nanoseconds; empty: none
+  std::vector<double> missed_;  ///< how much each rank's share of the time of all tiles exceeds the prediction
 };
 
-/// Whether rays go through the box in nearly the same directions as in another view of it: within `most` radians, and
-/// `most` of the distance to its centre.
+/// Whether rays pass through the box in nearly the same directions in both views: the viewing directions differ by less
+/// than `most` radians, and the eyes are closer together than `most` times the distance of `camera` to the centre of
+/// the box.
 bool is_near(const scene::Camera& camera, const scene::Camera& other, const scene::Box& box, double most);
 
 }  // namespace tessera::frame

@@ -11,26 +11,26 @@
 
 namespace tessera::frame {
 
-/// A caller's mesh in the renderer's form.
+/// A caller's mesh in the form that the renderer needs.
 struct ArrayMesh {
   scene::TetMeshView mesh;
-  std::shared_ptr<const void> owner;  ///< of the caller's arrays, or of the converted ones
+  std::shared_ptr<const void> owner;  ///< keeps the caller's arrays, or the converted ones, in memory
   MeshCounts counts;
   HigherOrderCells higher_order;
   std::vector<std::string> notes;
 };
 
-/// Borrows the arrays if they have the layout that the renderer needs and nothing is blank; otherwise converts them as
-/// those of a file. `may_be_empty`: for a part; duplicate cells are then counted together with those of the other
-/// parts, not here. `planning` is called once, without blocks if there is nothing to convert. Throws Error(bad_input)
-/// naming array and place.
+/// Borrows the arrays if they have the layout that the renderer needs and no value is blank; otherwise converts them
+/// like those of a file. `may_be_empty`: the arrays are a part of a mesh; duplicate cells are then counted together
+/// with those of the other parts, not here. `planning` is called once, with an empty list of blocks if there is nothing
+/// to convert. Throws Error(bad_input) that names the array and the position.
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
                          const cells::HigherOrderPlanning& planning = cells::plan_higher_order);
 
-/// The same for callers that only write it: borrowed whatever its numbers are.
+/// The same for callers that only write the mesh: the arrays are borrowed without checking their values.
 ArrayMesh mesh_to_write(const MeshArrays& arrays);
 
-/// An existing mesh as a caller's arrays, borrowed from `owner`.
+/// Describes an existing mesh by the arrays of a caller; they are borrowed from `owner`.
 MeshArrays arrays_of(const scene::TetMeshView& mesh, std::string field_name, std::shared_ptr<const void> owner);
 
 }  // namespace tessera::frame

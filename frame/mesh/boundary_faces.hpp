@@ -12,23 +12,24 @@
 
 namespace tessera::frame {
 
-/// The faces of a mesh that belong to only one tet (tessera/surfaces.hpp), in the order of their corners' positions.
-/// The order of a face's corners varies, but its normal points outward; for faces of flat tets the orientation is
-/// arbitrary.
+/// The faces of a mesh that belong to only one tet (tessera/surfaces.hpp), sorted by the positions of their corners.
+/// The order of the three corners of a face varies, but its normal points outward; for faces of flat tets the
+/// orientation is arbitrary.
 struct BoundaryFaces {
-  tessera::TriangleMesh mesh;     ///< three separate points per triangle; for cell data three times the tet's value
-  std::vector<std::uint8_t> own;  ///< by triangle: 1 if this rank has the tet
+  tessera::TriangleMesh mesh;  ///< three separate points per triangle; cell data: each of the three has the tet's value
+  std::vector<std::uint8_t> own;  ///< one flag per triangle: 1 if this rank has the tet
 };
 
-/// For a mesh that is whole. Uses 80 bytes per tet while it runs, in the caller's task arena (oneTBB).
+/// Finds the boundary faces of a whole mesh. Uses 80 bytes per tet while it runs. Must be called in the caller's task
+/// arena (oneTBB).
 BoundaryFaces boundary_faces(const scene::TetMeshView& mesh);
 
-/// For a mesh in parts, one per rank; the same triangles on all ranks. Collective: sends every face that no other tet
-/// of the part shares to all ranks, 104 bytes per face.
+/// Finds the boundary faces of a mesh in parts, one part per rank, and returns the same triangles on all ranks.
+/// Collective: every rank sends the faces that no other tet of its part shares to all ranks, 104 bytes per face.
 BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport);
 
-/// All triangle surfaces of a frame, with the triangles owned by process `process` of `processes`. `boundary` is null
-/// if there is none; it and the surfaces' triangles must outlive the result.
+/// Returns all triangle surfaces of a frame and marks the triangles that process `process` of `processes` owns.
+/// `boundary` may be null. `boundary` and the triangles of the surfaces must outlive the result.
 std::vector<projection::SurfaceFaces> faces_of(const scene::Surfaces& surfaces, const scene::SurfaceSet& set,
                                                const BoundaryFaces* boundary, std::uint32_t process = 0,
                                                std::uint32_t processes = 1);

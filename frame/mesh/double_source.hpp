@@ -9,11 +9,12 @@
 
 namespace tessera::frame {
 
-/// A tile renderer's source in double precision, for any frame: the `planes` or the `scanline` rasterizer. It cuts
-/// cells at steps of the transfer function where necessary, and all cells where rays meet triangle surfaces, whose
-/// crossings are in the store from the beginning. The store is one buffer for all pixels.
+/// A tile renderer's source in double precision, for any frame. It uses the `planes` or the `scanline` rasterizer.
+/// Cells are cut at steps of the transfer function where necessary. Where rays cross triangle surfaces, all cells are
+/// cut there; the crossings of these surfaces are in the store from the beginning. The store is one buffer for all
+/// pixels.
 ///
-/// AttributeSegments are only possible with the `planes` rasterizer, without such surfaces.
+/// AttributeSegments require the `planes` rasterizer and a frame without triangle surfaces.
 template <class Segments>
 class DoubleSourceOf {
  public:
@@ -31,7 +32,7 @@ class DoubleSourceOf {
   [[nodiscard]] std::size_t capacity() const { return lists_.segments.capacity(); }
   [[nodiscard]] std::size_t alive() const { return lists_.segments.size; }
 
-  /// Bytes per segment in all buffers of a renderer and its sink.
+  /// Bytes that one segment takes in all buffers of a renderer and its sink.
   static constexpr std::size_t bytes_a_segment = Store::bytes_each + integrals::SegmentBatch::bytes_each;
 
  private:
@@ -44,8 +45,8 @@ class DoubleSourceOf {
   TileCounts* counts_;
   scene::PixelRect rect_{0, 0, 0, 0};
   const projection::DepthOrder* order_ = nullptr;
-  std::size_t next_ = 0;  ///< next cell
-  std::size_t most_ = 0;  ///< most segments that a cell may add
+  std::size_t next_ = 0;  ///< index of the next cell in `order_`
+  std::size_t most_ = 0;  ///< upper bound of the segments that a cell may add
   projection::ScanlineBuffers scanline_;
   projection::SplitRasterizer<Segments> splitter_;
   projection::FaceMarks marks_;

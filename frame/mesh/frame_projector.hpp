@@ -22,45 +22,48 @@
 
 namespace tessera::frame {
 
-/// A frame to project. Faces and lattice exclude each other.
+/// A frame to project. `faces` and `lattice` exclude each other.
 struct FrameTask {
   const projection::PixelSpace* space;
   projection::TileGrid grid;
   const scene::TransferFunction* function;
-  const scene::SurfaceSet* surfaces = nullptr;        ///< in the volume; may be null or empty
-  std::span<const projection::SurfaceFaces> faces{};  ///< of triangle surfaces
-  const scene::Lattice* lattice = nullptr;            ///< for rendering on the lattice; null: in double precision
-  const projection::MatterLight* light = nullptr;     ///< on the lattice: on the matter of point data; null: none
-  std::int32_t number = -1;                           ///< for the trace
-  float longest_edge = 0;                             ///< scanline: of the whole data set, world units; 0: of this mesh
-  double longest_ray = 0;                             ///< bounds a ray's length in the whole mesh; 0: diagonal()
-  scene::FrameWatch* watch = nullptr;                 ///< project() throws scene::FrameStopped once it requests a stop
+  const scene::SurfaceSet* surfaces = nullptr;        ///< surfaces inside the volume; may be null or empty
+  std::span<const projection::SurfaceFaces> faces{};  ///< triangle surfaces
+  const scene::Lattice* lattice = nullptr;            ///< lattice on which to render; null: render in double precision
+  const projection::MatterLight* light =
+      nullptr;               ///< on the lattice: lighting of the matter of point data; null: no lighting
+  std::int32_t number = -1;  ///< frame number for the trace
+  float longest_edge = 0;    ///< scanline: longest edge of the whole data set, world units; 0: that of this mesh
+  double longest_ray = 0;    ///< upper bound of a ray's length in the whole mesh; 0: diagonal()
+  scene::FrameWatch* watch = nullptr;  ///< project() throws scene::FrameStopped once it requests a stop
 };
 
-/// The consumers of a frame's segments. A sink belongs to one thread: tiles go to it one after the other, and each
-/// thread takes tiles in ascending order.
+/// The sinks that receive the segments of a frame. A sink belongs to one thread, which passes tiles to the sink one
+/// after the other; each thread takes its tiles in ascending order.
 struct TileSinks {
   std::function<std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>>()> in_double;
   std::function<std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>>()> on_lattice{};
-  /// If set, sinks for the cells of tiles that a device can rasterize; segments of other cells still go to the sinks
-  /// above. There are then no surfaces.
+  /// If set, makes sinks for the cells of tiles that a device can rasterize; segments of other cells still go to the
+  /// sinks above. May only be set for frames without surfaces.
   std::function<std::unique_ptr<compositor::CellSink>()> of_cells{};
-  std::uint64_t kept_bytes = 0;         ///< of the memory budget
-  const scene::Image* image = nullptr;  ///< target of the sinks, so that the watch sees finished tiles; null: elsewhere
+  std::uint64_t kept_bytes = 0;         ///< bytes of the memory budget that the sinks need
+  const scene::Image* image = nullptr;  ///< the image into which the sinks write, so that the watch sees finished
+                                        ///< tiles; null: not an image here
   /// Runs once before the first tile, in parallel with the projection of vertices. May be empty.
   std::function<void()> prepare{};
-  /// Called once before the first tile with the tiles that have cells or triangles and will go to a sink of this
-  /// process, unless TeamTask::skip() is called for them. May be empty.
+  /// Called once before the first tile. `has_any` marks the tiles that have cells or triangles. Each marked tile will
+  /// go to a sink of this process, unless TeamTask::skip() is called for it. May be empty.
   std::function<void(const std::vector<bool>& has_any)> announce{};
 };
 
-/// The processes that project a frame together: they have one mesh in shared memory and do the same task, without faces
-/// and image. Each does its share of the passes and some of the tiles.
+/// The processes that project a frame together. They have one mesh in shared memory and do the same task, without faces
+/// and image. Each process does its share of the passes and renders some of the tiles.
 struct TeamTask {
   scene::Team* team = nullptr;  ///< null: a single process
-  /// The preferred owner of tile `tile`, other things being equal; -1: no preference. Empty: no preferences.
+  /// Returns the member that should own tile `tile` if the load permits; -1: no preference. Empty: no tile has a
+  /// preference.
   std::function<int(std::size_t tile)> preferred{};
-  /// Called for each announced tile that another member turns out to own, before the next tile begins.
+  /// Called for each announced tile that another member has taken, before this process begins its next tile.
   std::function<void(std::size_t tile)> skip{};
   /// Called before this process waits for its team while parts of tiles may be in transit. May be empty.
   std::function<void()> before_waiting{};
@@ -69,18 +72,18 @@ struct TeamTask {
 /// Projects a process's tets to the ray segments of every tile, on all its threads.
 class FrameProjector {
  public:
-  /// The mesh must outlive this object; the settings must be valid.
+  /// The mesh must outlive this object, and the settings must be valid.
   FrameProjector(const scene::TetMeshView& mesh, const Settings& settings);
-  /// For a mesh that has already been prepared; `box` is its scene::bounds().
+  /// Uses a mesh that has already been prepared; `box` is the scene::bounds() of that mesh.
   FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box, const Settings& settings);
 
-  /// Fills all of the statistics except the names. Throws Error(bad_input) for a view that the rasterizer does not
-  /// support.
+  /// Projects one frame and returns its statistics, complete except for the names. Throws Error(bad_input) for a view
+  /// that the rasterizer does not support.
   FrameStatistics project(const FrameTask& frame, const TileSinks& sinks, const TeamTask& team = {});
 
   /// The mesh's scene::bounds().
   [[nodiscard]] const scene::Box& box() const { return box_; }
-  /// Length of the diagonal of the mesh's box, world units: an upper bound for rays inside.
+  /// Length of the diagonal of the mesh's box, world units: an upper bound of the length of a ray inside the mesh.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
  private:
@@ -103,7 +106,7 @@ class FrameProjector {
   std::shared_ptr<const projection::PreparedMesh> prepared_;
   scene::Box box_;
   double diagonal_ = 0;
-  float longest_edge_ = 0;  ///< scanline only
+  float longest_edge_ = 0;  ///< used only by the scanline rasterizer
   projection::LargeArray<projection::PixelVertex> vertices_;
   projection::LargeArray<projection::LatticeVertex> lattice_vertices_;
   projection::TileListBuffers list_buffers_;

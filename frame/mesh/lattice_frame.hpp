@@ -14,22 +14,22 @@
 
 namespace tessera::frame {
 
-/// The integer lattice of a frame, computed only from the whole mesh's box and scalar range, so that all processes have
-/// the same one. None if the lattice is not accurate enough, so that double precision is needed:
-///   - the mesh's depth times the largest extinction is above 2000: 16 steps, 1e-8 of the depth, could be visible. With
-///     perspective, the longest ray of the image counts instead of the depth;
+/// Returns the integer lattice of a frame. It is computed only from the box and scalar range of the whole mesh, so that
+/// all processes have the same lattice. Returns nothing if the frame needs double precision:
+///   - the mesh's depth times the largest extinction is above 2000: 16 steps of the lattice, 1e-8 of the depth, could
+///     be visible. With perspective, the longest ray of the image replaces the depth;
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could exceed its share of
 ///     the error (scene/error_budget.hpp);
 ///   - two steps of the function are so close together that the lattice cannot separate them;
 ///   - there are triangle surfaces, which cut segments in double precision;
-///   - it is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
+///   - the lattice is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,
                                          const scene::TransferFunction& function, const Settings& settings);
 
-/// Which single cells need double precision on this lattice. `longest_ray` bounds a ray's length in the whole mesh,
-/// world units.
+/// Returns the limits by which single cells need double precision on this lattice. `longest_ray` is an upper bound of a
+/// ray's length in the whole mesh, world units.
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
                                         const scene::TransferFunction& function, scene::Emission emission,
                                         double longest_ray);

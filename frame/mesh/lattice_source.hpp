@@ -7,10 +7,10 @@
 
 namespace tessera::frame {
 
-/// A tile renderer's source on the integer lattice, for frames that fit it (frame/mesh/lattice_frame.hpp): it
-/// rasterizes sixteen cells at once and moves their segments to the pixels' windows.
+/// A tile renderer's source on the integer lattice, for frames that have a lattice (frame/mesh/lattice_frame.hpp). It
+/// rasterizes sixteen cells at once and moves their segments to the windows of the pixels.
 ///
-/// Windows hold a few dozen segments per pixel; the store is full when one of them is.
+/// A window holds a few dozen segments of one pixel. The store is full when one window is full.
 class LatticeSource {
  public:
   using Encoding = sorting::LatticeEncoding;
@@ -33,9 +33,9 @@ class LatticeSource {
   std::size_t first_capacity_, at_least_;
   scene::PixelRect rect_{0, 0, 0, 0};
   const projection::DepthOrder* order_ = nullptr;
-  std::size_t cells_ = 0;   ///< rasterized, including those of the stream
-  std::size_t from_ = 0;    ///< the stream's first cell
-  std::size_t placed_ = 0;  ///< segments of the stream that are in the windows
+  std::size_t cells_ = 0;   ///< number of rasterized cells, including those whose segments are still in `stream_`
+  std::size_t from_ = 0;    ///< index of the first cell whose segments are in `stream_`
+  std::size_t placed_ = 0;  ///< number of segments of `stream_` that are already in the windows
   projection::LatticeScratch scratch_;
   projection::SegmentStream stream_;
   projection::SegmentWindows windows_;

@@ -9,24 +9,24 @@
 #include "tessera/settings.hpp"
 #include "tessera/sink.hpp"
 
-/// Layers of a frame (integrals/ray_layers.hpp) are transported like a deep image, one sample each: sinks and casters
-/// make them instead of its samples, and the rank that assembles the frame makes images from them.
+/// Layers of a frame (integrals/ray_layers.hpp) are transported like a deep image whose samples are the layers. Sinks
+/// and casters produce layers instead of samples, and the rank that assembles the frame makes one image of each layer.
 namespace tessera::frame {
 
-/// Throws Error(system_failure) if half the memory budget does not hold this number of images.
+/// Throws Error(system_failure) if this number of images does not fit in half of the memory budget.
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes);
 
 /// The name of the requested result in messages: `peel` or "deep picture".
 inline const char* deep_word(bool peeled) { return peeled ? "`peel`" : "deep image"; }
 
-/// Image n contains sample n of each pixel.
+/// Returns `count` images; image n contains sample n of each pixel.
 std::vector<scene::Image> layer_images(const scene::DeepImage& layers, int count);
 
-/// Makes layers valid samples of a deep image: if several points have the same depth, each after the first moves behind
-/// the previous one by the smallest difference of floats.
+/// Makes layers valid samples of a deep image. If several samples of a pixel have the same depth, each of them after
+/// the first is moved behind the previous one by the smallest difference between floats.
 void make_tidy(scene::DeepImage& layers);
 
-/// Stores the result of a deep pass in its frame, according to the settings.
+/// Stores the result of a deep pass in its frame, as a deep image or as layers, depending on the settings.
 void put_deep(scene::DeepImage&& made, const FrameSettings& settings, RenderedFrame& frame);
 
 }  // namespace tessera::frame

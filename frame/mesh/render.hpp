@@ -23,10 +23,10 @@ namespace tessera::frame {
 
 /// Statistics of one frame.
 struct FrameStatistics : scene::FrameCounters {
-  bool on_lattice = false;      ///< the integer lattice was precise enough; false: double precision
-  std::string instruction_set;  ///< of the kernels that ran
-  std::string integrator;       ///< chosen by `automatic`
-  std::string composited_on;    ///< CompositingDevice::name, of all compositors; empty in a single process
+  bool on_lattice = false;      ///< whether the integer lattice was precise enough; false: double precision was used
+  std::string instruction_set;  ///< instruction set of the kernels that ran
+  std::string integrator;       ///< the integrator that was used, also where the setting is `automatic`
+  std::string composited_on;    ///< names (CompositingDevice::name) for all compositors; empty in a single process
 };
 
 /// Renders one tetrahedral mesh many times in one process, with settings that are valid for meshes (tessera::validate);
@@ -36,28 +36,28 @@ struct FrameStatistics : scene::FrameCounters {
 class Renderer {
  public:
   Renderer(const scene::TetMeshView& mesh, const Settings& settings);
-  /// For a mesh that has already been prepared, with its facts.
+  /// Uses a mesh that has already been prepared; `facts` are the facts of that mesh.
   Renderer(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
            const Settings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// The composited image in memory. The same bits for any number of threads, tile size and memory budget on one
-  /// instruction set. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer does not
-  /// support; Error(system_failure) if one pixel's segments exceed the budget.
+  /// Returns the composited image. On one instruction set, the image has the same bits for any number of threads, tile
+  /// size and memory budget. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer does
+  /// not support. Throws Error(system_failure) if the segments of one pixel exceed the budget.
   ///
-  /// With `deep` also returns the deep image of the same frame, or its layers, as set by set_frame(); half the memory
-  /// budget is reserved for it. Throws Error(system_failure) if its samples exceed that half.
+  /// If `deep` is not null, also renders the deep image of the same frame, or its layers, depending on set_frame();
+  /// half of the memory budget is reserved for this. Throws Error(system_failure) if the samples exceed that half.
   ///
-  /// `watch` receives every finished tile, including tiles without cells. Once it requests a stop, render() throws
-  /// scene::FrameStopped within a batch of cells, and can be called again.
+  /// `watch` receives every finished tile, including tiles without cells. If `watch` requests a stop, render() throws
+  /// scene::FrameStopped within a batch of cells; render() can then be called again.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
                       scene::DeepImage* deep = nullptr, scene::FrameWatch* watch = nullptr);
 
-  /// Sets the options of later frames; they must be valid for the settings. With `peel` deep images are layers, as
-  /// PeelSink makes them, not tidy.
+  /// Sets the options of later frames, which must be valid for the settings. With `peel`, deep images consist of
+  /// layers, as PeelSink makes them, and are not made tidy.
   void set_frame(const FrameSettings& frame);
 
  private:
@@ -65,7 +65,7 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// The name of the setting for surfaces in messages: `iso` or `surface`.
+/// The name that messages use for the setting of surfaces: `iso` or `surface`.
 const char* surface_word(const Surfaces& surfaces);
 
 }  // namespace tessera::frame

@@ -16,19 +16,19 @@
 
 namespace tessera::frame {
 
-/// A tile renderer's view of its frame.
+/// What a tile renderer needs to know about its frame.
 struct TileContext {
   const projection::ProjectedMesh* projected;
-  double depth_origin;         ///< of the entries' near_depth
-  std::uint64_t budget_bytes;  ///< for this renderer's buffers
+  double depth_origin;         ///< depth to which the entries' `near_depth` is relative
+  std::uint64_t budget_bytes;  ///< memory for the buffers of this renderer
   scene::Trace* trace;
   Rasterizer rasterizer = Rasterizer::planes;
-  float longest_edge = 1;                              ///< scanline: of the whole data set
-  bool opaque = false;                                 ///< a typical ray ends in a fraction of the mesh's depth
-  std::span<const projection::Step> steps{};           ///< of the transfer function
-  const projection::CellsAtSteps* at_steps = nullptr;  ///< whose segments are cut there; null: none
-  const projection::FrameFaces* faces = nullptr;       ///< surfaces of triangles, in double precision; null: none
-  std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once it is requested
+  float longest_edge = 1;                              ///< scanline: longest edge of the whole data set
+  bool opaque = false;                                 ///< whether a typical ray ends in a fraction of the mesh's depth
+  std::span<const projection::Step> steps{};           ///< steps of the transfer function
+  const projection::CellsAtSteps* at_steps = nullptr;  ///< cells whose segments are cut at the steps; null: none
+  const projection::FrameFaces* faces = nullptr;       ///< triangle surfaces, in double precision; null: none
+  std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once a stop is requested
 };
 
 /// Sums over the tiles of one renderer.
@@ -37,22 +37,23 @@ struct TileCounts {
   projection::RasterCounts raster;
 };
 
-/// Renders tiles one after the other: rasterizes cells and passes the segments to a sink; one renderer per thread.
+/// Renders tiles one after the other: rasterizes cells and passes the segments to a sink. Each thread has one renderer.
 ///
-/// A tile's cells come in the order of their nearest depth. When the store of segments is full, all segments nearer
-/// than the next cell are final: the sink takes them, the others stay. So memory does not depend on the depth
-/// complexity, only on the number of segments that overlap in depth. If that exceeds the store, the store grows up to
-/// the budget. After that, a sink that accepts segments in any order gets all of them; for another sink the rectangle
-/// is rendered in quarters, which hold a quarter of the segments each. No segment is ever dropped.
+/// The cells of a tile are sorted by their nearest depth. When the store of segments is full, all segments in front of
+/// the next cell are final: the sink takes the final segments, and the others stay in the store. So the required memory
+/// does not depend on the depth complexity, only on the number of segments that overlap in depth. If that number
+/// exceeds the store, the store grows up to the budget. After that, a sink that accepts segments in any order gets all
+/// of them; for any other sink, the rectangle is rendered in quarters, each with about a quarter of the segments. No
+/// segment is ever dropped.
 ///
-/// `Source` fills a store of its encoding from cells (DoubleSource, LatticeSource):
+/// `Source` rasterizes cells into a store of its encoding (DoubleSource, LatticeSource):
 ///
 ///   bool start(rect, order)     empties the store for these pixels; false: even that exceeds the budget
-///   bool fill(sink)             adds cells until the store is full (true), or until all are in it or the sink needs no
-///                               more (false)
-///   Depth final_depth()         after fill() returned true: no later segment is before this depth
-///   std::size_t at_least()      shorter lists may wait
-///   bool make_room()            after the sink took the final segments: whether fill() can continue
+///   bool fill(sink)             adds cells to the store; returns true when the store is full, false when all cells are
+///                               in the store or the sink needs no further cells
+///   Depth final_depth()         after fill() returned true: no later segment begins in front of this depth
+///   std::size_t at_least()      lists with fewer segments may stay in the store until they have grown
+///   bool make_room()            called after the sink took the final segments; returns whether fill() can continue
 ///   Store& store(); std::size_t capacity(); std::uint64_t alive()
 template <class Source>
 class TileRenderer {
@@ -60,15 +61,16 @@ class TileRenderer {
   using Encoding = typename Source::Encoding;
   using Sink = compositor::TileSink<Encoding>;
 
-  /// `more`: additional arguments of the source.
+  /// `more`: additional arguments for the source.
   template <class... More>
   explicit TileRenderer(const TileContext& context, More&&... more)
       : trace_(context.trace), source_(context, counts_, std::forward<More>(more)...) {}
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
 
-  /// Passes the pixels of `rect` from `entries`, which are reordered, to `sink`. Throws Error(system_failure) if one
-  /// pixel alone has more segments that overlap in depth than the budget holds.
+  /// Passes the segments of the pixels of `rect` to `sink`; `entries` are the cells of the tile, which this function
+  /// reorders. Throws Error(system_failure) if one pixel alone has more segments that overlap in depth than the budget
+  /// can hold.
   void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, Sink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }

@@ -10,12 +10,13 @@
 namespace tessera::frame {
 
 /// The reference for images of a clipped mesh: the mesh before it was clipped, and the half-spaces to which rays are
-/// restricted. The reference is thus independent of how cells are cut.
+/// restricted. So the reference does not depend on how cells are cut.
 struct UncutMesh {
   scene::TetMeshView mesh;
-  std::span<const scene::HalfSpace> kept;  ///< of the data set's state; empty: the mesh is what is rendered
-  scene::TetMeshView rendered;             ///< the mesh that is rendered; `mesh` if this rank has only a part
-  std::shared_ptr<const void> owner;       ///< of `mesh`; null: the data set's state
+  std::span<const scene::HalfSpace>
+      kept;                     ///< half-spaces of the data set's state; empty: `mesh` is rendered without clipping
+  scene::TetMeshView rendered;  ///< the mesh that is rendered; equals `mesh` if this rank has only a part
+  std::shared_ptr<const void> owner;  ///< keeps `mesh` in memory; null: the data set's state does
 };
 
 }  // namespace tessera::frame

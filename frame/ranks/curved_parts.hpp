@@ -6,10 +6,10 @@
 
 namespace tessera::frame {
 
-/// This rank's part of a caller's mesh. All ranks divide higher-order cells with one tolerance, computed from the box,
-/// the field's range and the number of tets of all parts, so that shared faces are cut the same way. If tolerances and
-/// limits differ, the smallest are used. Counts and higher_order are those of the whole mesh. Collective; throws as
-/// mesh_of_arrays.
+/// Converts this rank's part of a caller's mesh. All ranks divide higher-order cells with one tolerance, so that shared
+/// faces are cut the same way; it is computed from the box, the range of the field and the number of tets of all parts.
+/// If tolerances and limits differ between ranks, the smallest are used. In the result, `counts` and `higher_order` are
+/// those of the whole mesh. Collective; throws like mesh_of_arrays.
 ArrayMesh mesh_of_part(const MeshArrays& part, exchange::Transport& transport);
 
 }  // namespace tessera::frame

@@ -17,11 +17,12 @@ namespace tessera::frame {
 
 /// One rank's part of a mesh that several read together.
 struct DistributedMesh {
-  MeshPart part;                             ///< this rank's tets; none on ranks that do not project
-  scene::MeshFacts facts;                    ///< of the whole mesh
-  std::shared_ptr<const FieldOfAll> of_all;  ///< null: the options select everything
-  /// The result of io::read_mesh for the whole file, the same on every rank, except the mesh, which only has its field
-  /// and association.
+  MeshPart part;           ///< this rank's tets; empty on ranks that do not project
+  scene::MeshFacts facts;  ///< of the whole mesh
+  std::shared_ptr<const FieldOfAll>
+      of_all;  ///< field and facts without the user's selection of cells; null: the options select everything
+  /// The result of io::read_mesh for the whole file, the same on every rank. Its mesh, however, contains only the
+  /// field's name and association.
   cells::MeshFile description;
 };
 

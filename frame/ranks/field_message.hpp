@@ -11,21 +11,22 @@
 /// Messages shared by the descriptions of data sets.
 namespace tessera::frame {
 
-/// u64 count, texts.
+/// Appends texts in the format: u64 count, texts.
 void append_texts(exchange::Bytes& message, const std::vector<std::string>& texts);
 std::vector<std::string> take_texts(exchange::MessageReader& reader);
 
 scene::Association take_association(exchange::MessageReader& reader);
 
-/// Text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count, u8 active, u8 ids.
+/// Appends a field in the format: text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count,
+/// u8 active, u8 ids.
 void append_field(exchange::Bytes& message, const cells::FieldSummary& field);
 cells::FieldSummary take_field(exchange::MessageReader& reader);
 
-/// u64 count, fields.
+/// Appends fields in the format: u64 count, fields.
 void append_fields(exchange::Bytes& message, const std::vector<cells::FieldSummary>& fields);
 std::vector<cells::FieldSummary> take_fields(exchange::MessageReader& reader);
 
-/// u64 steps, u64 step, list of f64 times.
+/// Appends a time step in the format: u64 steps, u64 step, list of f64 times.
 void append_time_step(exchange::Bytes& message, const scene::TimeStepRead& read);
 scene::TimeStepRead take_time_step(exchange::MessageReader& reader);
 

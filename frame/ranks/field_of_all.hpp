@@ -18,11 +18,13 @@ struct FieldOfAll {
   scene::FieldSamples samples;
 };
 
-/// The fill value of a mesh in parts, one per rank, if the range in `facts` ends at one. Collective.
+/// Finds the fill value of a mesh whose parts are on the ranks, if the range in `facts` ends at a fill value.
+/// Collective.
 std::optional<scene::FillValue> find_fill_value(exchange::Transport& transport, const scene::TetMeshView& part,
                                                 const scene::MeshFacts& facts);
 
-/// Samples of a mesh in parts, one per rank, by the indices of the tets in the whole mesh. Collective.
+/// Samples the field of a mesh whose parts are on the ranks. `global_tet` has the index of each tet in the whole mesh,
+/// by which tets are chosen. Collective.
 scene::FieldSamples gather_field_samples(exchange::Transport& transport, const scene::TetMeshView& part,
                                          std::span<const std::uint64_t> global_tet, const scene::MeshFacts& facts);
 

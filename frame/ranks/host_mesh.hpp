@@ -12,12 +12,13 @@ namespace tessera::frame {
 /// The parts of a team's members as one mesh in their shared memory. Its tets are in the order of the whole mesh, so
 /// that ties in depth are resolved as in one process.
 struct HostMesh {
-  scene::TetMeshView mesh;                      ///< no tets: it was not made
-  std::span<const std::uint64_t> global_tet{};  ///< index in the whole mesh of each tet; empty: its own
+  scene::TetMeshView mesh;                      ///< has no tets if the mesh was not made
+  std::span<const std::uint64_t> global_tet{};  ///< index of each tet in the whole mesh; empty: the index in `mesh`
 
-  /// Made from this member's tets `tets`, whose corners are in canonical order, of mesh `part`; `global_tet` as above.
-  /// Makes none if it would take more than half of the machine's free memory, or is too large for 32-bit indices.
-  /// Within an epoch of the team, collective; valid until the next one is made.
+  /// Makes the mesh. This member contributes the tets `tets` of mesh `part`, whose corners are in canonical order;
+  /// `global_tet` has their indices as above. The result has no tets if the mesh would take more than half of the
+  /// machine's free memory, or is too large for 32-bit indices. Collective, within an epoch of the team; the result is
+  /// valid until the next mesh is made.
   static HostMesh made(scene::Team& team, const scene::TetMeshView& part, std::span<const scene::Tet> tets,
                        std::span<const std::uint64_t> global_tet);
 };

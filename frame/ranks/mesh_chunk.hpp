@@ -9,7 +9,7 @@
 #include "exchange/message.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
 
-/// The wire record of channel `mesh`, its sender and its receiver.
+/// The wire record of channel `mesh`, with its sender and its receiver.
 namespace tessera::frame {
 
 /// The header of a message `mesh_chunk`, after its MessageHeader. It is followed by (v = vertices, t = tets):
@@ -19,8 +19,8 @@ namespace tessera::frame {
 ///     u64 global_tet[t]
 ///     u32 tets[4 t]
 ///
-/// Vertices are numbered along the stream from one rank to another: a message contains v new ones starting at
-/// `first_vertex`, and its tets refer to these and earlier ones.
+/// Vertices are numbered along the stream from one rank to another. A message contains v new vertices, numbered from
+/// `first_vertex` on; its tets refer to these and to earlier vertices.
 struct MeshChunkHeader {
   std::uint32_t association = 0;  ///< scene::Association
   std::uint32_t vertices = 0, tets = 0;
@@ -36,7 +36,7 @@ class ChunkSender {
   ChunkSender(const MeshPart& local, std::vector<std::uint32_t> part_of, int parts, int first_part,
               std::size_t chunk_bytes);
 
-  /// The next message and the part to which it belongs; false when all have been sent.
+  /// Returns the next message, and in `part` the part to which it belongs; false when all messages have been sent.
   bool next(int& part, exchange::Bytes& message);
 
  private:
@@ -45,10 +45,11 @@ class ChunkSender {
   const MeshPart& local_;
   std::size_t chunk_bytes_;
   int parts_, first_part_, turn_ = -1;  ///< the `turn_`th part is being sent
-  std::vector<std::uint64_t> begin_;    ///< of each part in order_; parts + 1
-  std::vector<std::uint32_t> order_;    ///< tets by part, ascending in each
-  std::size_t at_ = 0, end_ = 0;        ///< the rest of the part, in order_
-  std::vector<std::uint32_t> number_;   ///< of each vertex in the stream; `unsent` if it was not sent to this part
+  std::vector<std::uint64_t> begin_;    ///< begin of each part in `order_`; parts + 1 values
+  std::vector<std::uint32_t> order_;    ///< tets sorted by part, ascending within each part
+  std::size_t at_ = 0, end_ = 0;        ///< range in `order_` of the tets of the current part that are not sent yet
+  std::vector<std::uint32_t>
+      number_;  ///< number of each vertex in the stream; `unsent` if the vertex was not sent to this part
   std::uint64_t sent_vertices_ = 0;
 };
 
@@ -60,20 +61,20 @@ class ChunkReceiver {
   /// Throws Error(system_failure) if the message does not match its MeshChunkHeader.
   void add(int from, const exchange::Bytes& message);
 
-  /// The part, in canonical order, independent of the order of the messages.
+  /// Returns the part, in canonical order, independent of the order in which messages arrived.
   MeshPart finish();
 
  private:
   struct Base {
-    std::uint64_t first;  ///< vertex of the stream
-    std::uint64_t own;    ///< the same vertex here
+    std::uint64_t first;  ///< number of a vertex in the stream
+    std::uint64_t own;    ///< index of the same vertex in `part_`
   };
 
   scene::Association association_;
   std::uint64_t expected_;
   MeshPart part_;
-  std::vector<std::vector<Base>> bases_;   ///< of each rank's messages
-  std::vector<std::uint64_t> stream_end_;  ///< vertices received from each rank
+  std::vector<std::vector<Base>> bases_;   ///< one list per rank, with an entry for each of its messages
+  std::vector<std::uint64_t> stream_end_;  ///< number of vertices received from each rank
 };
 
 }  // namespace tessera::frame

@@ -10,8 +10,8 @@ namespace tessera::frame {
 
 enum class Reduction { sum, bit_or, minimum };
 
-/// Reduces element by element over all ranks; the result is on every rank. Collective (channel `agreement`); the same
-/// length on every rank, fewer than 2^27 numbers.
+/// Reduces the values of all ranks element by element and returns the result on every rank. Collective (channel
+/// `agreement`). All ranks must pass the same number of values, fewer than 2^27.
 std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vector<std::uint64_t> values,
                                       Reduction reduction);
 

@@ -7,7 +7,8 @@
 
 namespace tessera::frame {
 
-/// The user's view of an exception that ended this rank's part: itself if it is a scene::Error.
+/// Describes an exception that ended this rank's part to the user. Returns the exception itself if it is a
+/// scene::Error.
 scene::Error run_error(const exchange::Transport& transport, const std::exception& fault);
 
 }  // namespace tessera::frame

@@ -11,16 +11,16 @@
 
 namespace tessera::frame {
 
-/// Passes a stop between ranks: a request on one rank stops all.
+/// Passes stops between ranks: a request on one rank stops the run on all ranks.
 ///
-/// Its messages carry the number of the run to stop. All ranks number the runs the same way, so that a stop that
-/// arrives too late stops nothing else, and one that arrives early is kept for its run.
+/// Its messages contain the number of the run to stop. All ranks number the runs the same way. So a stop that arrives
+/// after its run does not affect later runs, and a stop that arrives before its run is kept for it.
 class StopRelay {
  public:
   explicit StopRelay(exchange::Transport& transport) : transport_(transport) {}
 
-  /// One run, for the lifetime of this object: stops from any rank reach token(). Collective: all ranks construct them
-  /// in the same order.
+  /// Listens for stops during one run, which lasts as long as this object: a stop requested on any rank reaches
+  /// token(). Collective: all ranks construct these objects in the same order.
   class Run {
    public:
     Run(StopRelay& relay, const std::stop_token& asked);
@@ -43,8 +43,8 @@ class StopRelay {
 
  private:
   exchange::Transport& transport_;
-  std::uint64_t run_ = 0;      ///< of the latest run
-  std::uint64_t stopped_ = 0;  ///< the latest run for which a stop was received
+  std::uint64_t run_ = 0;      ///< number of the latest run
+  std::uint64_t stopped_ = 0;  ///< number of the latest run for which a stop was received
 };
 
 }  // namespace tessera::frame

@@ -11,14 +11,14 @@
 
 namespace tessera::frame {
 
-/// A few threads that run tasks in the given order. They are separate from oneTBB's, since projection on the same rank
-/// may occupy all of oneTBB's workers while it waits for the results of these threads.
+/// A few threads that start tasks in the order of run(). They are separate from oneTBB's threads, because projection on
+/// the same rank may occupy all of oneTBB's workers while it waits for the results of these threads.
 class WorkerThreads {
  public:
-  /// `on_error` is called on the failing thread with a task's exception; later tasks still run. Throws
-  /// Error(system_failure) if the system does not provide `count` threads.
+  /// When a task throws, `on_error` is called with the exception on the thread of that task; later tasks still run.
+  /// Throws Error(system_failure) if the system does not provide `count` threads.
   WorkerThreads(int count, std::function<void(const std::exception&)> on_error);
-  /// Drops tasks that have not begun and waits for those that have.
+  /// Drops tasks that have not begun and waits for tasks that have begun.
   ~WorkerThreads();
   WorkerThreads(const WorkerThreads&) = delete;
   WorkerThreads& operator=(const WorkerThreads&) = delete;
