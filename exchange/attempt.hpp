@@ -7,11 +7,11 @@
 
 namespace tessera::exchange {
 
-/// Runs `work` on every rank with a transport that has errors of its own: an error that one rank throws or passes to
-/// fail() is thrown here on all ranks, the same one everywhere. Afterwards the underlying transport works as if nothing
-/// had been sent. Errors of the underlying transport remain the run's errors. Collective.
+/// Runs `work` on every rank with a transport whose errors are separate from those of `beneath`: if one rank throws an
+/// error or passes it to fail(), attempt() throws this error on all ranks. Afterwards `beneath` works as if nothing had
+/// been sent. Errors of `beneath` itself remain the run's errors. Collective.
 ///
-/// How  A rank that has finished or failed sends an end to all ranks on every channel, behind all its other messages,
+/// How  A rank that has finished or failed sends an end to all ranks on every channel, after all its other messages,
 ///      and receives until it has the ends of all ranks. Then all ranks leave together.
 void attempt(Transport& beneath, const std::function<void(Transport&)>& work);
 

@@ -11,20 +11,21 @@
 
 namespace tessera::exchange {
 
-/// Wake-ups between ranks of one machine, in shared memory: a rank that sends a message rings the receiver's bell, so
-/// that the receiver need not poll MPI all the time. One poll of MPI costs 20 to 30 microseconds.
+/// Wake-ups between ranks of one machine, in shared memory. A rank that sends a message rings the bell of the receiver,
+/// so that the receiver need not poll MPI all the time. One poll of MPI costs 20 to 30 microseconds.
 class Bells {
  public:
-  /// The bells of this rank's machine; null if it has no other ranks or no shared memory. Collective over all ranks.
+  /// Returns the bells of this rank's machine; null if the machine has no other ranks or no shared memory. Collective
+  /// over all ranks.
   static std::shared_ptr<Bells> hung(Transport& transport);
 
   /// Whether every rank of the transport is on this machine.
   [[nodiscard]] bool of_all() const { return of_all_; }
   /// Wakes a rank; no effect if it is on another machine.
   void ring(int rank);
-  /// The state of this rank's bell, to be read before checking for what the bell announces.
+  /// The state of this rank's bell. Must be read before the rank checks for the events that the bell announces.
   [[nodiscard]] std::uint32_t heard() const;
-  /// Returns when this rank's bell has rung since `heard()`, or after `most`.
+  /// Returns when this rank's bell has rung since its state was `heard`, or after `most`.
   void wait(std::uint32_t heard, std::chrono::microseconds most);
 
  private:

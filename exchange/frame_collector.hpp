@@ -10,53 +10,55 @@
 
 namespace tessera::exchange {
 
-/// The parts of one frame that one compositor has received, and those still missing: bookkeeping without threads or
-/// sends.
+/// Records which parts of one frame a compositor has received, and which are still missing. Does not start threads or
+/// send messages.
 class FrameCollector {
  public:
-  /// For `projectors` projectors, numbered 0 .. N-1, and the tiles of `compositor` in the map, which must outlive this.
+  /// Collects from `projectors` projectors, numbered 0 .. N-1, the tiles of `compositor` in `map`. The map must outlive
+  /// this object.
   FrameCollector(int projectors, const TileMap& map, int compositor);
 
   void begin(int projector, const FrameBegin& begin, std::span<const std::byte> bits);
   void end(const FrameEnd& sums);
-  /// Returns the depth from which on the part adds to the tile: the depth to which the projector's previous part was
-  /// complete.
+  /// Adds a part. Returns the depth from which on the part adds to the tile: the depth to which the projector's
+  /// previous part was complete.
   double add(int projector, TilePart part);
 
   [[nodiscard]] bool has_all_begins() const { return begins_ == projectors_; }
-  /// Of the projectors that send their ends to this compositor.
+  /// Whether all projectors that send their ends to this compositor have done so.
   [[nodiscard]] bool has_all_ends() const { return ends_ == ends_awaited_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
   [[nodiscard]] float longest_edge() const { return longest_edge_; }
-  /// Of the frame's lattice segments; units of 0 if it has none.
+  /// The lattice of the frame's segments; its units are 0 if the frame has no lattice.
   [[nodiscard]] const scene::Lattice& lattice() const { return lattice_; }
   [[nodiscard]] const FrameEnd& sums() const { return sums_; }
 
   /// Parts of a tile that wait to be merged.
   struct Waiting {
-    std::vector<TilePart> parts;  ///< ascending by start_depth: each may be added once all segments before its
-                                  ///< start_depth have been
-    double final_depth;           ///< the tile is complete before this planar depth; infinity: complete
-    bool all;                     ///< no more parts will come
+    std::vector<TilePart> parts;  ///< ascending by `start_depth`: a part may be merged once all segments before its
+                                  ///< `start_depth` have been
+    double final_depth;           ///< the tile is complete up to this planar depth; infinity: complete
+    bool all;                     ///< whether no more parts will come
   };
-  /// Whether a tile can be worked on: it is complete and not merged yet, or enough of it can be merged to free memory.
+  /// Whether a tile can be merged: it is complete and not merged yet, or enough of it can be merged to free memory.
   [[nodiscard]] bool has_work(std::uint32_t tile) const;
   Waiting take(std::uint32_t tile);
 
   /// Marks a tile as composited.
   void finish(std::uint32_t tile);
-  [[nodiscard]] bool finished() const;  ///< all tiles are, and all ends have come
+  [[nodiscard]] bool finished() const;  ///< whether all tiles are composited and all ends have arrived
 
-  /// A part's bytes are owed to its projector while the part is ahead: its tile comes after the first one that is not
-  /// composited, or it begins deeper in that tile than all projectors are complete. pay() returns the bytes that are
-  /// due now.
+  /// Records that the bytes of a part must be returned to its projector. They are withheld while the part is ahead: its
+  /// tile comes after the first tile that is not composited, or the part begins deeper in that first tile than the
+  /// depth to which all projectors are complete. pay() returns the bytes that are due now.
   void owe(int projector, std::uint32_t tile, double start_depth, std::uint64_t bytes);
   std::uint64_t pay(int projector);
 
  private:
   struct Tile {
     int contributors = 0, ended = 0;
-    std::vector<double> final_depth;  ///< by projector: initially -infinity, +infinity for those without parts
+    std::vector<double>
+        final_depth;  ///< one per projector: initially -infinity; +infinity for projectors without parts
     std::vector<TilePart> parts;
     std::uint64_t bytes = 0;
     double merged_to = -std::numeric_limits<double>::infinity();
@@ -69,7 +71,7 @@ class FrameCollector {
   void advance();
 
   int projectors_;
-  const std::vector<std::uint32_t>* numbers_;  ///< this compositor's tiles in order
+  const std::vector<std::uint32_t>* numbers_;  ///< numbers of this compositor's tiles, in order
   std::vector<Tile> tiles_;                    ///< in the same order
   std::size_t first_unfinished_ = 0;
   int begins_ = 0, ends_ = 0, ends_awaited_ = 0;
@@ -83,7 +85,7 @@ class FrameCollector {
     std::uint64_t bytes;
   };
   [[nodiscard]] bool is_ahead(const Debt& debt) const;
-  std::vector<std::vector<Debt>> debts_;  ///< by projector
+  std::vector<std::vector<Debt>> debts_;  ///< one list per projector
 };
 
 }  // namespace tessera::exchange

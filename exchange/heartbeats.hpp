@@ -14,14 +14,16 @@ namespace tessera::exchange {
 
 using tessera::StallSettings;
 
-/// One rank's part in finding ranks that have stopped: its messages to the others, and how it reacts to their silence.
+/// One rank's part in detecting ranks that have stopped: the heartbeats that it sends, and its reaction to the silence
+/// of others.
 ///
-/// Eight times per timeout, every rank sends a heartbeat to rank 0, and rank 0 one to each; any other message counts as
-/// one. They come from the thread that calls MPI, so that a rank that computes for hours is not considered silent, but
-/// one whose process or machine has stopped is. Rank 0 watches all others. They watch rank 0, and the lowest running
-/// one of them reports its silence: rank r waits r quarters of a second longer and reports nothing if another has.
+/// Eight times per timeout, every rank sends a heartbeat to rank 0, and rank 0 sends a heartbeat to each rank. Any
+/// other message counts as a heartbeat. Heartbeats come from the thread that calls MPI. So a rank that computes for
+/// hours is not considered silent, but a rank whose process or machine has stopped is. Rank 0 watches all other ranks.
+/// The other ranks watch rank 0, and the lowest of them that still runs reports the silence of rank 0: rank r waits r
+/// quarters of a second longer, and reports nothing if another rank has.
 ///
-/// Bookkeeping only: the caller transfers the messages and passes the time.
+/// This class only keeps records: the caller transfers the messages and passes the current time.
 class Heartbeats {
  public:
   using Clock = StallWatch::Clock;
@@ -33,15 +35,16 @@ class Heartbeats {
     int to;
     Bytes bytes;
   };
-  /// To be called repeatedly: returns the messages to send now, and reports silent ranks and their return.
+  /// Must be called repeatedly. Returns the messages to send now, and reports ranks that have become silent or have
+  /// returned.
   std::vector<Outgoing> turn(Clock::time_point now);
 
-  /// A message of another kind has come from that rank.
+  /// Records that another message than a heartbeat has come from rank `from`.
   void heard(int from) { watch_.heard(from); }
-  /// A message of turn() has come. Throws Error(system_failure) if it is not one.
+  /// Takes a message that another rank's turn() returned. Throws Error(system_failure) if `bytes` are not one.
   void take(int from, const Bytes& bytes);
 
-  /// The rank whose silence ends the run, and the run's error. Only with StallSettings::ends_run.
+  /// The rank whose silence ends the run, and the error with which the run ends. Only with StallSettings::ends_run.
   struct Lost {
     int rank;
     scene::Error error;
@@ -55,7 +58,7 @@ class Heartbeats {
   int rank_, size_;
   StallSettings settings_;
   StallWatch watch_;
-  std::vector<std::string> names_;  ///< of processes, by rank; empty until received
+  std::vector<std::string> names_;  ///< process name of each rank; empty until received
   Clock::duration interval_;
   Clock::time_point next_beat_;
   std::optional<Lost> lost_;

@@ -14,15 +14,16 @@
 
 namespace tessera::exchange {
 
-/// Ranks of one machine that render frames together. The members wait for each other in shared memory, and get the
-/// run's error, which includes another rank's death, from the transport. Ranks of other machines take no part.
+/// Ranks of one machine that render frames together. Members wait for each other in shared memory. They get the run's
+/// error, for example the death of another rank, from the transport. Ranks of other machines are not members.
 ///
-/// An epoch is a frame or another joint task: all members begin the same epochs in the same order. A member that leaves
-/// an epoch early calls leave(); members that wait for it in this epoch then throw FrameStopped.
+/// An epoch is a frame or another joint task; all members begin the same epochs in the same order. A member that leaves
+/// an epoch early calls leave(); members that wait for this member during the epoch then throw FrameStopped.
 class HostTeam final : public scene::Team {
  public:
-  /// The team of this rank and the other ranks of its machine that join; null if there are no others, if they cannot
-  /// share memory, or if this rank does not join. Collective over all ranks. `transport` must outlive the team.
+  /// Returns the team of this rank and the other ranks of its machine for which `joins` is true. Null if there are no
+  /// others, if they cannot share memory, or if `joins` is false. Collective over all ranks. `transport` must outlive
+  /// the team.
   static std::unique_ptr<HostTeam> form(Transport& transport, bool joins);
   ~HostTeam() override;
   HostTeam(const HostTeam&) = delete;
@@ -35,7 +36,7 @@ class HostTeam final : public scene::Team {
 
   /// Begins the next epoch once all members have finished the last one. Throws the run's error.
   void begin();
-  /// This member does not continue the epoch.
+  /// Declares that this member does not continue the epoch.
   void leave();
 
   void barrier() override;

@@ -12,7 +12,7 @@
 
 namespace tessera::exchange {
 
-/// The receiving side that all transports share: one queue per channel, and the run's error.
+/// The receiving side of every transport: one queue per channel, and the run's error.
 class Mailboxes {
  public:
   void deliver(Channel channel, Message message);

@@ -27,13 +27,12 @@ inline constexpr std::uint16_t wire_version = 31;        ///< incremented whenev
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
-  begin = 1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver in its order, lowest bit first: 1: parts
-              ///< follow
-  parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,    ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
-  packet =
-      51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty: pixels (packed_pixels.hpp) and,
-           ///< if kept, f32 error estimates row by row
+  begin =
+      1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver, in its order, lowest bit first: 1: parts follow
+  parts = 2,    ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
+  end = 3,      ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
+  packet = 51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty: pixels (packed_pixels.hpp)
+                ///< and, if kept, f32 error estimates row by row
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
@@ -45,7 +44,7 @@ enum class MessageKind : std::uint16_t {
   // Channel frames.
   frame_left = 8,  ///< nothing: a frame has been assembled
   // Channel stop.
-  stop = 9,  ///< u64 number of the run to stop; 0, to oneself: the run is over
+  stop = 9,  ///< u64 number of the run to stop; 0, which a rank sends to itself: the run is over
   // Channel mesh.
   mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
   cell_keys = 61,    ///< u8: 1: the sender's last; list of u64: cells (frame/ranks/shared_repetitions.cpp)
@@ -55,13 +54,13 @@ enum class MessageKind : std::uint16_t {
   clock_answer = 13,    ///< f64 microseconds of the sender's clock
   trace_events = 14,    ///< text
   // Channel agreement: collectives (collectives.hpp) and their content.
-  gathered = 15,          ///< list of messages, each a list of bytes: those of all ranks, from rank 0
+  gathered = 15,          ///< list of messages, each a list of bytes: the messages of all ranks, from rank 0
   barrier = 16,           ///< nothing
   reduction = 17,         ///< list of u64 (frame/ranks/reduce.hpp)
   instruction_sets = 18,  ///< i64 Highway's target bits
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty on ranks without one
-  read_in_parts = 21,     ///< u8: 1: all projectors read
+  read_in_parts = 21,     ///< u8: 1: all projectors read parts of the file
   field_tallies = 22,     ///< u64 fields; for each: a field, NumberTally, u8 blocks_count_up; f64 box of higher-order
                           ///< cells[6], texts of block names
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
@@ -72,43 +71,43 @@ enum class MessageKind : std::uint16_t {
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64
-  tet_table = 28,         ///< list of u64: a rank's tets or messages for each projector
+  tet_table = 28,         ///< list of u64: for each projector, how many tets or messages this rank has for it
   longest_edge = 29,      ///< f32
-  frames_complete = 30,   ///< u64; for a mesh also u64, 1 if the other frames are to be rendered again
-  sink_failed = 31,       ///< u8
+  frames_complete = 30,   ///< u64 complete frames; for a mesh also u64, 1 if the other frames are to be rendered again
+  sink_failed = 31,       ///< u8: 1: rank 0's sink threw an exception
   cell_totals = 32,       ///< f64 lowest, f64 highest, u64 blank samples
   row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
-  column_costs = 34,      ///< the same, with a list of u64 for each requested row of the map
-  seconds = 35,           ///< f64 processor time of the last frame, or per thread (frame/grid/sort_first.cpp)
+  column_costs = 34,      ///< the same as row_costs, with a list of u64 for each requested row of the map
+  seconds = 35,           ///< f64 processor time of the last frame, or for each thread (frame/grid/sort_first.cpp)
   of_job = 36,            ///< list of bytes: defined by the caller (tessera/job.hpp)
-  higher_order = 37,      ///< u64[128]: tets by their deviation (cells/curved/higher_order_plan.hpp), or the difference
-                          ///< between two images (api/queries/higher_order.cpp)
-  process_on_host = 38,   ///< exchange/one_line.cpp
+  higher_order = 37,      ///< u64[128]: numbers of tets, by deviation (cells/curved/higher_order_plan.hpp), or the
+                          ///< difference between two images (api/queries/higher_order.cpp)
+  process_on_host = 38,   ///< name and process of a rank (exchange/one_line.cpp)
   arguments = 58,         ///< list of bytes: the arguments of the sender (first_contact.cpp)
   field_samples = 39,     ///< list of scene::FieldSample: from a rank's part (api/queries/field_samples.cpp)
   open_faces = 47,        ///< list of OpenFace (frame/mesh/boundary_faces.cpp): faces of only one tet of a rank's part
   ray_tets = 48,          ///< list of RayTet (api/queries/probe.cpp): the tets of a rank's part that a ray meets
   curved_part =
-      40,  ///< frame/ranks/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+      40,  ///< a rank's part of a caller's mesh (frame/ranks/curved_parts.cpp); then MeshCounts, HigherOrderCells
   fill_tally = 62,   ///< scene::FillTally: for a rank's part of a field (api/dataset.cpp)
   next_frame = 52,   ///< u8: 1: there is another frame
-  machine = 53,      ///< text: the machine whose memory the sender shares, empty: none (shared_pages.cpp)
+  machine = 53,      ///< text: the machine on which the sender can share memory; empty: none (shared_pages.cpp)
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine; -1: none
   pages_seen = 55,   ///< u8: 1: the sender has opened the pages
   tile_times = 59,   ///< u8: 1: the last frame was not stopped; u64 process, f64 its processor time, list of TileTime
-  image_split = 60,  ///< u8; 1: list of i32 rows, for each a list of i32 columns, then for each a list of i32 steps; 0:
-                     ///< list of f64 weights of the ranks, empty: keep them
+  image_split = 60,  ///< u8: 1: list of i32 rows, for each a list of i32 columns, then for each a list of i32 steps; 0:
+                     ///< list of f64 weights of the ranks, empty: keep the present weights
   volume_facts =
       57,           ///< what the sender has read of a volume, and where its samples are (frame/grid/shared_volume.cpp)
   files_read = 64,  ///< until the end: text name, u64 bytes, u64 checksum (api/same_files.cpp)
   volume_labels = 63,  ///< u8 whether values are labels, list of f64: the labels (frame/grid/shared_labels.cpp)
-  // Channel fragments, to oneself.
+  // Channel fragments, from a rank to itself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.
   attempt_end = 49,  ///< u8 ErrorCode, 0 without error, text: the sender's last message of this attempt (attempt.hpp)
   // Internal to the transport.
-  fault = 41,    ///< from a rank to rank 0, its error: u8 ErrorCode, text
-  verdict = 42,  ///< the run's error to all: u8 ErrorCode, text
+  fault = 41,    ///< from a rank to rank 0: the rank's error: u8 ErrorCode, text
+  verdict = 42,  ///< from rank 0 to all: the run's error: u8 ErrorCode, text
   done = 43,     ///< from a rank to rank 0, nothing: the sender's last message
   clear = 44,    ///< from rank 0 to all, nothing: no rank sends further messages
   alive = 45,    ///< text: the name of the sender's process (heartbeats.hpp)
@@ -130,7 +129,7 @@ void append(Bytes& bytes, const Value& value) {
   bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-/// Appends the values without their number, which the reader knows.
+/// Appends the values without a count; the reader must know their number.
 template <class Values>
 void append_values(Bytes& bytes, const Values& values) {
   static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
@@ -146,10 +145,10 @@ void append_list(Bytes& bytes, const Values& values) {
 
 inline void append_text(Bytes& bytes, std::string_view text) { append_list(bytes, text); }
 
-/// A message's header; the caller appends the rest. Reserves `room` bytes for it.
+/// Returns a message that consists of its header; the caller appends the rest. Reserves memory for `room` more bytes.
 Bytes begin_message(MessageKind kind, std::size_t room = 0);
 
-/// A message of one value.
+/// Returns a message of one value.
 template <class Value>
 Bytes message_of(MessageKind kind, const Value& value) {
   Bytes message = begin_message(kind, sizeof value);
@@ -157,8 +156,8 @@ Bytes message_of(MessageKind kind, const Value& value) {
   return message;
 }
 
-/// Takes values off the front of bytes. Throws Error(system_failure) if there are too few bytes, before it allocates
-/// memory for more values than the bytes can contain.
+/// Takes values from the front of a sequence of bytes. Throws Error(system_failure) if there are too few bytes. A count
+/// in the bytes is checked first, so that no memory is allocated for more values than the bytes can contain.
 class RecordReader {
  public:
   explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -202,11 +201,11 @@ class RecordReader {
   }
 
   [[nodiscard]] bool empty() const { return left_.empty(); }
-  /// Throws Error(system_failure) if bytes are left.
+  /// Throws Error(system_failure) if some bytes have not been taken.
   void finish() const {
     if (!empty()) refuse("is longer than it states");
   }
-  /// Throws Error(system_failure): the message `what`, and that all ranks must run the same program.
+  /// Throws Error(system_failure). Its text contains `what`, and the advice that all ranks must run the same program.
   [[noreturn]] void refuse(std::string_view what) const;
 
  protected:
@@ -219,25 +218,26 @@ class RecordReader {
   int from_ = -1;  ///< the sending rank, if known
 };
 
-/// Reads a message that came from rank `from`. Throws Error(system_failure) that reports the fault and the sending
-/// rank, and that all ranks must run the same program. The bytes must outlive the reader.
+/// Reads a message that came from rank `from`. If the message is malformed, throws Error(system_failure) that describes
+/// the fault, names the sending rank, and advises that all ranks must run the same program. The bytes must outlive the
+/// reader.
 class MessageReader : public RecordReader {
  public:
-  /// Accepts any kind.
+  /// Accepts a message of any kind.
   MessageReader(std::span<const std::byte> message, int from);
-  /// Requires this kind.
+  /// Accepts only messages of kind `awaited`.
   MessageReader(std::span<const std::byte> message, int from, MessageKind awaited);
   MessageReader(const Message& message, MessageKind awaited) : MessageReader(message.bytes, message.from, awaited) {}
 
   [[nodiscard]] MessageKind kind() const { return kind_; }
-  /// For a message of a kind that is not expected here.
+  /// Throws Error(system_failure) because a message of this kind is not expected here.
   [[noreturn]] void refuse_kind() const;
 
  private:
   MessageKind kind_;
 };
 
-/// The value of a message that contains only one.
+/// Returns the value of a message that contains only one value.
 template <class Value>
 Value value_of(std::span<const std::byte> message, int from, MessageKind kind) {
   MessageReader reader(message, from, kind);

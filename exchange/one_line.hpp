@@ -3,14 +3,16 @@
 
 #include "exchange/transport.hpp"
 
-/// A run that fails reports its error in one line, on whichever rank: each asks here before it prints.
+/// Ensures that a run that fails reports its error in one line, on whichever rank: each rank calls may_speak() before
+/// it prints.
 namespace tessera::exchange {
 
-/// True for the first call: after share_one_line(), among all ranks on this machine; before, in this process. Safe in
-/// signal handlers.
+/// Returns true only for the first call: after share_one_line(), the first on this machine; before, the first in this
+/// process. Safe in signal handlers.
 bool may_speak();
 
-/// Collective. Returns whether this is the machine of rank 0.
+/// Shares the flag of may_speak() among the ranks of each machine. Collective. Returns whether this is the machine of
+/// rank 0.
 bool share_one_line(Transport& transport);
 
 }  // namespace tessera::exchange

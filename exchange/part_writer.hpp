@@ -8,39 +8,40 @@
 
 namespace tessera::exchange {
 
-/// Writes the parts of a tile for another process: the common code of all sinks that send fragments.
+/// Writes the parts of a tile for another process; used by all sinks that send fragments.
 ///
-/// Parts are sent as they fill, so a tile of any depth complexity takes a projector no memory. A part contains the
-/// depth up to which the tile is complete, so that the compositor need not store all of it either.
+/// Parts are sent as soon as they are full, so the memory that a projector needs does not grow with the depth
+/// complexity of a tile. Each part states the depth up to which the tile is complete, so that the compositor need not
+/// store the whole tile either.
 class PartWriter {
  public:
   using Deliver = std::function<void(TilePart)>;
 
-  /// `deliver` takes parts of a tile in order; it may block, and it is called from any thread that uses the writer.
+  /// `deliver` receives the parts of a tile in order. It may block. It is called from the threads that use the writer.
   PartWriter(RecordKind kind, Deliver deliver) : kind_(kind), deliver_(std::move(deliver)) {}
 
   void begin_tile(std::size_t tile, const scene::PixelRect& rect);
   void end_tile();
-  /// Starts a rectangle of the tile, to which pixel numbers refer from now on.
+  /// Starts a rectangle of the tile. From now on, pixel numbers refer to this rectangle.
   void start(const scene::PixelRect& rect) { rect_ = rect; }
 
-  /// Records are appended here; their fragments must be counted.
+  /// The buffer to which callers append records. They must also report the number of fragments to count().
   Bytes& records() { return records_; }
   void count(std::uint64_t fragments) { fragments_ += fragments; }
-  /// The next records, or those just written, are of ascending pixels, each once; note_segments(): some are single
-  /// segments (PartHeader).
+  /// begin_ascending(): the next records, or those just written, have ascending pixels, each pixel once.
+  /// note_segments(): some of the records are single segments (PartHeader).
   void begin_ascending() { ++ascents_; }
   void note_segments() { segments_ = true; }
 
-  /// Number within the tile of a pixel of the current rectangle.
+  /// Converts the number of a pixel in the current rectangle to its number in the tile.
   [[nodiscard]] std::uint32_t tile_pixel(std::size_t pixel) const;
   [[nodiscard]] const scene::PixelRect& rect() const { return rect_; }
 
-  /// All of the rectangle's fragments before `depth` are in the records.
+  /// States that the records contain all of the rectangle's fragments before `depth`.
   void complete_to(double depth);
   /// Sends the records if there are enough for a message.
   void send_if_full();
-  /// Sends the records, if any; another writer continues the tile.
+  /// Sends the records if there are any, without ending the tile, which another writer continues.
   void send_rest();
 
  private:

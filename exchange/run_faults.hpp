@@ -6,14 +6,15 @@
 #include "exchange/message.hpp"
 #include "scene/error.hpp"
 
-/// Errors of a run as MpiTransport passes them on.
+/// Errors of a run in the form in which MpiTransport passes them between ranks.
 namespace tessera::exchange {
 
-/// A message of kind `fault` or `verdict`, and the error in one.
+/// error_message() makes a message of kind `fault` or `verdict` from an error; take_error() reads the error from such a
+/// message.
 Bytes error_message(MessageKind kind, const scene::Error& error);
 scene::Error take_error(MessageReader& reader);
 
-/// Identifies this process to users: machine and process number.
+/// Returns a text that identifies this process to users: machine and process number.
 std::string process_name();
 
 }  // namespace tessera::exchange

@@ -7,15 +7,16 @@
 namespace tessera::exchange {
 
 /// Assigns tiles to compositors: each sequence of P tiles in scanline order goes to the P compositors in a random order
-/// of its own (Juliachs et al. 2007, section 3), which spreads neighbouring tiles, which tend to be equally full,
-/// evenly. Seeded: the same on every rank and in every run. The image does not depend on it.
+/// of its own (Juliachs et al. 2007, section 3). This spreads neighbouring tiles, which tend to be equally full,
+/// evenly. The random order is determined by a seed, and is the same on every rank and in every run. The image does not
+/// depend on it.
 class TileMap {
  public:
   TileMap(std::size_t tiles, int compositors, std::uint64_t seed);
 
-  /// Compositor (0 .. P-1, not its rank) of a tile.
+  /// The compositor of a tile, as a number 0 .. P-1 (not a rank).
   [[nodiscard]] int owner(std::size_t tile) const { return owners_[tile]; }
-  /// Tiles of a compositor, in scanline order: the order in which every projector sends them.
+  /// The tiles of a compositor, in scanline order, which is also the order in which every projector sends them.
   [[nodiscard]] const std::vector<std::uint32_t>& tiles(int compositor) const {
     return tiles_[static_cast<std::size_t>(compositor)];
   }

@@ -16,16 +16,17 @@ namespace tessera::exchange {
 
 class Bells;
 
-/// The subject of a message. Each channel is a separate queue, so that its readers never get another's messages.
+/// The subject of a message. Each channel is a separate queue, so that a receiver only gets messages of its own
+/// channel.
 enum class Channel : std::uint8_t {
-  agreement,  ///< facts that all ranks share: small, collective
+  agreement,  ///< collective exchange of small facts that all ranks share
   mesh,       ///< parts of a mesh between readers and projectors; ranges of a volume's cells between all ranks
-  fragments,  ///< projector to compositor: ray segments or runs of tiles
-  credit,     ///< compositor to projector: room for more
-  tiles,      ///< compositor to the first compositor: finished tiles
-  frames,     ///< first compositor to projectors: a frame has been assembled
-  timing,     ///< spans to the rank that writes the trace
-  stop,       ///< any rank to all: the run is to end early
+  fragments,  ///< from projector to compositor: ray segments or runs of tiles
+  credit,     ///< from compositor to projector: permission to send more bytes
+  tiles,      ///< from compositors to the first compositor: finished tiles
+  frames,     ///< from the first compositor to projectors: a frame has been assembled
+  timing,     ///< spans, sent to the rank that writes the trace
+  stop,       ///< from any rank to all: the run is to end early
 };
 inline constexpr std::size_t channel_count = 8;
 
@@ -36,8 +37,8 @@ struct Message {
   Bytes bytes;
 };
 
-/// Communication between ranks. Everything between processes passes through here; MPI is one implementation, ranks that
-/// are threads of one process another.
+/// Communication between ranks. All data between processes pass through this interface. One implementation uses MPI; in
+/// another, ranks are threads of one process.
 ///
 /// Messages between two ranks on one channel arrive in the order in which they were sent; a rank may send to itself.
 /// All member functions may be called from any thread. A message is at most 2^30 bytes.
@@ -52,12 +53,12 @@ class Transport {
   [[nodiscard]] virtual int size() const = 0;
 
   /// Takes the message and returns at once. A sender that must not run ahead of its receiver uses credit (outbox.hpp).
-  /// `frame` is for the trace: -1 for none.
+  /// `frame` is the frame number in the trace; -1: none.
   virtual void send(int to, Channel channel, Bytes bytes, std::int32_t frame) = 0;
   void send(int to, Channel channel, Bytes bytes) { send(to, channel, std::move(bytes), -1); }
 
-  /// The channel's next message, from any rank. Sleeps until it arrives; empty if `timeout` passes first. Throws the
-  /// run's error once there is one.
+  /// Returns the next message of the channel, from any rank. Sleeps until a message arrives; returns nothing if
+  /// `timeout` passes first. Throws the run's error if there is one.
   virtual std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) = 0;
   Message receive(Channel channel) {
     for (;;)
@@ -67,22 +68,23 @@ class Transport {
   /// Ends the run for all ranks with this error, unless another came first.
   virtual void fail(const scene::Error& error) = 0;
 
-  /// Throws the run's error if there is one: for long loops that neither send nor receive.
+  /// Throws the run's error if there is one. Meant for long loops that neither send nor receive.
   virtual void check() const = 0;
 
-  /// Whether this rank's cores have other work than messages now: it then checks for messages less often. Initially
-  /// false.
+  /// Sets whether this rank's cores have other work than messages now. If so, the rank checks for messages less often.
+  /// Initially false.
   virtual void set_working(bool /*working*/) {}
 
-  /// From now on, ranks of this machine wake each other by these bells; null: they do not. Collective.
+  /// From now on, ranks of this machine wake each other by these bells; null: without bells. Collective.
   virtual void use_bells(const std::shared_ptr<Bells>& /*bells*/) {}
 
-  /// Where spans of `send` are recorded from now on: fragments and meshes in `projecting`, tiles in `compositing`.
-  /// Null: nowhere. Both must outlive the transport, or be replaced before they end.
+  /// Sets where spans of `send` are recorded from now on: for fragments and meshes in `projecting`, for tiles in
+  /// `compositing`. Null: nowhere. Both must outlive the transport, or be replaced before their lifetimes end.
   virtual void trace_to(scene::Trace* projecting, scene::Trace* compositing) = 0;
 
-  /// Assigns numbers to `count` more frames, the same on all ranks, and returns the first; messages and traces use
-  /// them. Sessions that share a transport, one after the other, never reuse numbers. Not while a frame is in progress.
+  /// Assigns numbers to `count` more frames and returns the first number. Messages and traces use these numbers, which
+  /// are the same on all ranks. Sessions that share a transport, one after the other, never reuse numbers. Must not be
+  /// called while a frame is in progress.
   std::uint32_t number_frames(std::size_t count) {
     return std::exchange(frames_, frames_ + static_cast<std::uint32_t>(count));
   }

@@ -10,24 +10,25 @@
 #include "scene/pixel_rect.hpp"
 #include "tessera/settings.hpp"
 
-/// Direct-send compositing (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 5.2.2 and A.5): every rank
-/// has an image of its part of a volume. From all other ranks, it receives the pixels of one band of rows, which it
-/// composites by the depth order of the parts. Any number of ranks.
+/// Direct-send compositing (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 5.2.2 and A.5). Every rank
+/// has an image of its part of a volume. Each rank receives the pixels of one band of rows from all other ranks, and
+/// composites them in the depth order of the parts. Works for any number of ranks.
 namespace tessera::exchange {
 
-/// Rows of a packet: enough that packed_pixels.hpp predicts most of them, few enough for several packets per rank.
+/// Number of rows in a packet: large enough that packed_pixels.hpp predicts most rows, small enough for several packets
+/// per rank.
 inline constexpr int packet_rows = 64;
 
-/// The bands of `area` that ranks composite, one each, counted from the top: their numbers of rows differ by at most
-/// one.
+/// Returns band `number` of `area`, counted from the top. Every rank composites one band; the numbers of rows of the
+/// bands differ by at most one.
 PixelRect band_of(const PixelRect& area, int number, int ranks);
 
-/// The number of each rank's band, by where ranks may have pixels: a rank whose pixels are higher up gets a higher
-/// band, so that many of its pixels stay with it (docs/RESULTS.md, Exchanges).
+/// Returns the number of each rank's band. `own` contains the pixels that each rank may have. A rank whose pixels are
+/// higher up in the image gets a higher band, so that many of its pixels stay on the rank (docs/RESULTS.md, Exchanges).
 std::vector<int> band_numbers(std::span<const PixelRect> own);
 
-/// The ranks to which the rank at `place` of a depth order (ranks, front to back) sends, in this order: those behind it
-/// from the nearest on, then those in front from the nearest on.
+/// The ranks to which the rank at `place` of a depth order (ranks, front to back) sends. The order of the result is the
+/// order of sending: first the ranks behind this one, from the nearest on, then those in front, from the nearest on.
 std::vector<int> send_order(std::span<const int> order, std::size_t place);
 
 /// A rank whose pixels are composited, and whether they go in front of or behind the pixels composited so far.
@@ -35,10 +36,11 @@ struct Layer {
   int rank;
   bool in_front;
 };
-/// The ranks whose pixels the rank at `place` composites onto its own, in this order: those in front of it from the
-/// nearest on, then those behind from the nearest on. So each is adjacent in depth to the pixels composited so far, and
-/// bits do not depend on the order of arrival. (Algorithm 1 begins with the front ones and puts the rank's own behind
-/// them; here, the rank's own are composited first because they are available at once.)
+/// The ranks whose pixels the rank at `place` composites with its own, in the order of compositing: first the ranks in
+/// front of this one, from the nearest on, then those behind, from the nearest on. So each rank is adjacent in depth to
+/// the pixels composited so far, and the bits of the image do not depend on the order of arrival. (Algorithm 1 of the
+/// thesis begins with the ranks in front and puts the rank's own pixels behind them; here, the rank's own pixels come
+/// first because they are available at once.)
 std::vector<Layer> receive_order(std::span<const int> order, std::size_t place);
 
 struct DirectSendTask {
@@ -47,36 +49,36 @@ struct DirectSendTask {
   PixelRect area{};            ///< pixels that any rank may have; the same on all ranks
   PixelRect own{};             ///< pixels that this rank may have, within `area`; all others are empty
   std::uint64_t frame = 0;
-  bool stopped = false;  ///< this rank's image is incomplete: its packets state this and contain no pixels
+  bool stopped = false;  ///< this rank's image is incomplete: its packets report this and contain no pixels
   scene::Trace* trace = nullptr;
 };
 
 struct DirectSendResult {
   bool stopped = false;                   ///< some pixels of the band are missing
-  std::uint64_t bytes = 0, messages = 0;  ///< sent by this rank to others
+  std::uint64_t bytes = 0, messages = 0;  ///< what this rank has sent to other ranks
 };
 
-/// A rank's part in the exchanges of many frames.
+/// One rank's part in the exchanges of many frames.
 ///
 ///   asynchronous  packets of `packet_rows` rows are sent one by one, and packets that have arrived meanwhile are
-///                 composited: a band is complete soon after its last packet has come
-///   synchronous   rank p sends rank p + 1 all of its band and waits for its own from rank p - 1, then p + 2 and p - 2,
-///                 and so on, and composites when it has all of them
+///                 composited: a band is complete soon after its last packet has arrived
+///   synchronous   rank p sends all pixels of the band of rank p + 1 and waits for those of its own band from rank p -
+///                 1, then the same with p + 2 and p - 2, and so on; it composites when it has received all of them
 class DirectSender {
  public:
-  /// `transport` must outlive it.
+  /// `transport` must outlive this object.
   explicit DirectSender(Transport& transport) : transport_(transport) {}
 
-  /// Replaces this rank's band of its image by all ranks' pixels there, composited; the rest of the image is unchanged.
-  /// `error_bounds`, if not empty, are summed in the same way (by pixel, as returned by volume::Renderer::render());
-  /// either all ranks have them or none. Collective, once per frame, with ascending frame numbers; ranks may be several
-  /// frames ahead. Channel `fragments`. Throws the errors of the transport, and Error(system_failure) for messages that
-  /// do not belong to these exchanges.
+  /// Replaces this rank's band of its image by the composited pixels of all ranks; the rest of the image is unchanged.
+  /// `error_bounds`, if not empty, are summed in the same way (one value per pixel, as returned by
+  /// volume::Renderer::render()); either all ranks or no ranks pass them. Collective, once per frame, with ascending
+  /// frame numbers; ranks may be several frames ahead of others. Uses channel `fragments`. Throws the errors of the
+  /// transport, and Error(system_failure) for messages that do not belong to these exchanges.
   DirectSendResult run(DirectSend how, const DirectSendTask& task, scene::Image& image, std::span<float> error_bounds);
 
  private:
   Transport& transport_;
-  std::vector<Message> early_;  ///< of later frames, in the order of arrival
+  std::vector<Message> early_;  ///< messages of later frames, in the order of arrival
 };
 
 }  // namespace tessera::exchange

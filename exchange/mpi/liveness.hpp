@@ -10,28 +10,29 @@
 
 namespace tessera::exchange {
 
-/// Heartbeats, from the call of watch() on. Before it, none are sent, and those of other ranks are kept.
+/// Sends and checks heartbeats from the call of watch() on. Before this call, it sends none and keeps those of other
+/// ranks.
 class Liveness {
  public:
-  /// Called by any thread, before or during the other calls.
+  /// Starts the watch. May be called by any thread, before or during the other calls.
   void watch(const StallSettings& settings);
 
-  /// To be called repeatedly, with this rank: returns the messages to send now. Throws Error(system_failure) if a
-  /// message that came before watch() is not one of Heartbeats.
+  /// Must be called repeatedly, with this rank and the number of ranks. Returns the messages to send now. Throws
+  /// Error(system_failure) if a message that came before watch() is not a message of Heartbeats.
   std::vector<Heartbeats::Outgoing> turn(int rank, int size);
-  /// A message of another kind has come from that rank.
+  /// Records that another message than a heartbeat has come from rank `from`.
   void heard(int from);
-  /// A message of turn() has come. Throws like Heartbeats::take().
+  /// Takes a message that another rank's turn() returned. Throws like Heartbeats::take().
   void take(Message message);
 
-  /// The run's error once a rank's silence ends the run; null before.
+  /// The run's error after a rank's silence has ended the run; null before.
   [[nodiscard]] const scene::Error* lost() const;
 
  private:
   std::mutex mutex_;
-  std::optional<StallSettings> wanted_;  ///< guarded; set until the watch begins
+  std::optional<StallSettings> wanted_;  ///< guarded by `mutex_`; set until the watch begins
   std::optional<Heartbeats> heartbeats_;
-  std::vector<Message> early_;  ///< from ranks that already watch
+  std::vector<Message> early_;  ///< messages from ranks that already watch
 };
 
 }  // namespace tessera::exchange

@@ -10,15 +10,16 @@
 
 namespace tessera::exchange {
 
-/// The subset of MPI that mpi_transport.cpp needs: bytes with a tag to a rank, and those that have arrived. Only
-/// mpi_port.cpp includes mpi.h; mpi_absent.cpp replaces it with TESSERA_MPI=OFF.
+/// The subset of MPI that mpi_transport.cpp needs: it sends bytes with a tag to a rank, and receives bytes that have
+/// arrived. Only mpi_port.cpp includes mpi.h; with TESSERA_MPI=OFF, mpi_absent.cpp replaces it.
 ///
-/// Only start() and finish() wait. All but the constructor are called by one thread. MPI's errors become
-/// Error(system_failure) with its own text.
+/// Only start() and finish() block. All functions but the constructor must be called by one thread. MPI's errors are
+/// thrown as Error(system_failure) with the text of MPI.
 class MpiPort {
  public:
-  /// On a duplicate of a caller's communicator, given by its Fortran handle: collective. Throws Error(bad_input) if MPI
-  /// is not running or provides too little thread support. Without a handle: on MPI's world, which start() starts.
+  /// With a handle, uses a duplicate of a caller's communicator, given by its Fortran handle; this is collective, and
+  /// throws Error(bad_input) if MPI is not running or provides too little thread support. Without a handle, uses MPI's
+  /// world, which start() initializes.
   explicit MpiPort(std::optional<int> fortran_handle);
   ~MpiPort();
   MpiPort(const MpiPort&) = delete;
@@ -29,27 +30,29 @@ class MpiPort {
   [[nodiscard]] int size() const { return size_; }
 
   void send(int to, int tag, Bytes bytes);
-  /// Frees messages that have left.
+  /// Frees messages that have been sent completely.
   void complete();
-  /// Whether some messages have not left.
+  /// Whether some messages have not been sent completely.
   [[nodiscard]] bool is_sending() const;
-  /// Calls `visit` with the receiver of each message that has not left.
+  /// Calls `visit` with the receiver of each message that has not been sent completely.
   void for_each_receiver(const std::function<void(int rank)>& visit) const;
 
-  /// Begins to receive the messages that are there. Does not wait, because a long message also needs its sender to poll
-  /// MPI. Returns whether there were any.
+  /// Begins to receive the messages that MPI announces. Does not wait for them, because a long message also needs its
+  /// sender to poll MPI. Returns whether there were any messages.
   bool take();
   struct Arrived {
     Message message;
     int tag;
   };
-  /// The messages that have arrived, one at a time: those of one rank in the order in which it sent them.
+  /// Returns the next message that has arrived, if any. Messages of one rank come in the order in which that rank sent
+  /// them.
   std::optional<Arrived> next();
   [[nodiscard]] bool is_receiving() const;
 
-  /// Waits until all messages have left, then ends MPI or frees the duplicate.
+  /// Waits until all messages have been sent, then ends MPI or frees the duplicate of the communicator.
   void finish();
-  /// Instead of finish(): MPI may still read and write these messages, so they stay allocated until the process ends.
+  /// Called instead of finish(). MPI may still read and write pending messages, so they stay allocated until the
+  /// process ends.
   void abandon();
 
  private:

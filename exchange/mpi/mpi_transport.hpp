@@ -11,7 +11,8 @@
 
 namespace tessera::exchange {
 
-/// Whether a launcher (mpirun, srun) started this process as a rank of a job; from the environment, without MPI.
+/// Whether a launcher (mpirun, srun) started this process as a rank of a job. Determined from the environment, without
+/// calling MPI.
 bool launched_by_mpi();
 
 /// This process's rank in a caller's communicator, given by its Fortran handle. Throws Error(bad_input) if MPI is not
@@ -21,50 +22,50 @@ struct MpiShape {
 };
 MpiShape mpi_shape(int fortran_handle);
 
-/// Ranks that are processes: those of MPI's world, which this object then starts and ends, or of a caller's
+/// Ranks that are processes: those of MPI's world, which this object starts and ends, or those of a caller's
 /// communicator.
 ///
-/// One thread of this object makes all MPI calls, so MPI_THREAD_FUNNELED is enough in the world; next to a caller that
-/// uses MPI itself, MPI_THREAD_MULTIPLE is needed. The thread always takes what arrives: no send waits for the receiver
-/// to poll, and a rank that waits sleeps instead of spinning. It polls for messages whenever it sends, 100 microseconds
-/// after one came, and then less and less often, down to every 2 milliseconds; after set_working(true), every 2 to 5
-/// milliseconds. If all ranks have bells, it polls when they ring, unless it works, and otherwise every 20
-/// milliseconds.
+/// One thread of this object makes all MPI calls. MPI_THREAD_FUNNELED is therefore enough in MPI's world; if a caller
+/// uses MPI itself, MPI_THREAD_MULTIPLE is needed. The thread receives messages at any time, so that no send waits for
+/// the receiver to poll, and a rank that waits sleeps instead of spinning. The thread polls for messages whenever it
+/// sends, 100 microseconds after a message came, and then less and less often, down to every 2 milliseconds; after
+/// set_working(true), every 2 to 5 milliseconds. If all ranks have bells, it polls when they ring, unless the rank is
+/// working, and otherwise every 20 milliseconds.
 ///
-/// Errors: a rank that fails reports to rank 0, which chooses the first error that it receives and reports it to all. A
-/// rank that cannot end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone)
-/// prints the error and ends the process. The launcher notices when a process dies: it ends the other ranks by SIGTERM.
-/// Heartbeats (watch_stalls(), heartbeats.hpp) find a process that has stopped; there are none while MPI starts and
-/// ends.
+/// Errors: a rank that fails reports its error to rank 0. Rank 0 chooses the first error that it receives and reports
+/// it to all ranks. A rank that cannot end in an orderly way within `patience` after that (it hangs in a read, or its
+/// peers are gone) prints the error and ends the process. The launcher notices when a process dies, and ends the other
+/// ranks by SIGTERM. Heartbeats (watch_stalls(), heartbeats.hpp) detect a process that has stopped, but not while MPI
+/// starts and ends.
 class MpiTransport final : public Transport {
  public:
   using Speak = std::function<void(const scene::Error& error)>;
 
-  /// Callbacks into the process.
+  /// Functions that connect the transport to its process.
   struct Hooks {
-    /// Reports the run's error to the user, from any thread: on rank 0 before any rank can end, because a launcher ends
-    /// all ranks as soon as one ends with an error; on others as a last resort.
+    /// Reports the run's error to the user; may be called from any thread. Rank 0 calls it before any rank can end,
+    /// because a launcher ends all ranks as soon as one ends with an error; other ranks call it as a last resort.
     Speak speak;
-    /// Called once on every rank as soon as it has the error: from then on, the launcher may end it.
+    /// Called once on every rank as soon as the rank has the run's error: from then on, the launcher may end the rank.
     std::function<void()> on_fault;
-    /// Returns an error if rank `rank` of `size`, this one, has been asked to end. Called every few milliseconds; may
-    /// be empty.
+    /// Returns an error if this rank, number `rank` of `size`, has been asked to end. Called every few milliseconds;
+    /// may be empty.
     std::function<std::optional<scene::Error>(int rank, int size)> asked_to_end;
   };
 
   /// Starts MPI. Throws Error(system_failure) if that fails.
   explicit MpiTransport(Hooks hooks, std::chrono::milliseconds patience = std::chrono::seconds(5));
-  /// Over a duplicate of a caller's communicator, given by its Fortran handle. Collective, and so is the destructor.
-  /// The process is not affected: where the transport of MPI's world ends it, this one gives up the run and abandons
-  /// its messages. Throws Error(bad_input) if MPI is not running or provides too little thread support.
+  /// Uses a duplicate of a caller's communicator, given by its Fortran handle. Collective, and so is the destructor.
+  /// This transport never ends the process: where the transport of MPI's world would end it, this one gives up the run
+  /// and abandons its messages. Throws Error(bad_input) if MPI is not running or provides too little thread support.
   explicit MpiTransport(int fortran_handle, std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
 
-  /// Watches for stalled ranks from now on. Every rank calls this, with the same settings except for `say`.
+  /// Watches for stalled ranks from now on. Every rank must call this, with the same settings except for `say`.
   void watch_stalls(const StallSettings& settings);
 
-  /// Ends every rank's part, after its last send and receive, also after an error: waits until all ranks are here and
-  /// shuts MPI down. Returns the run's error if there is one.
+  /// Ends this rank's part. Every rank must call this after its last send and receive, also after an error. Waits until
+  /// all ranks have called it, and shuts MPI down. Returns the run's error if there is one.
   std::optional<scene::Error> finish();
 
   [[nodiscard]] int rank() const override;

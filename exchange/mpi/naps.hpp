@@ -12,18 +12,22 @@
 
 namespace tessera::exchange {
 
-/// Naps of the thread that calls MPI between two polls: a poll costs 20 to 30 us of a core that projects or composites.
-/// They double in length while no message comes, and end when this process has something to do or another rank rings.
+/// Pauses between two polls of the thread that calls MPI. A poll costs 20 to 30 us of a core that projects or
+/// composites. The pauses double in length while no message comes. A pause ends early when this process has something
+/// to do or another rank rings.
 class Naps {
  public:
-  /// Before a poll: a wake-up from now on ends the nap after it. Returns the bells in use, or null.
+  /// Must be called before a poll: a wake-up after this call ends the nap that follows the poll. Returns the bells in
+  /// use, or null.
   std::shared_ptr<Bells> begin_look();
-  /// After the poll. `came`: it found messages; `moving`: some are in transit and need further polls to proceed.
+  /// Naps; called after the poll. `came`: the poll found messages; `moving`: some messages are in transit and need
+  /// further polls to proceed.
   void take(bool came, bool moving);
 
-  // Called by any thread.
+  // These functions may be called by any thread.
   void wake(int rank);
-  /// While the rank's cores project, a poll in time for the next part of the frame is soon enough.
+  /// Sets whether the rank's cores project. While they do, polling is only needed in time for the next part of the
+  /// frame.
   void set_working(bool working, int rank);
   void use_bells(const std::shared_ptr<Bells>& bells, int rank);
 
@@ -34,7 +38,7 @@ class Naps {
   std::shared_ptr<Bells> bells_;
   std::atomic<bool> working_ = false;
 
-  // Used only by the thread that calls MPI.
+  // These members are used only by the thread that calls MPI.
   std::shared_ptr<Bells> looked_with_;
   std::uint32_t heard_ = 0;
   bool rang_ = false;

@@ -11,7 +11,7 @@
 
 namespace tessera::exchange {
 
-/// Messages between the threads that send them and the one that calls MPI.
+/// Queue between the threads that send messages and the thread that calls MPI.
 class SendQueue {
  public:
   struct Outgoing {
@@ -31,12 +31,13 @@ class SendQueue {
     if (!messages.empty()) settle(posting_, false);
   }
 
-  /// From now on, no queued message is handed over.
+  /// After this call, no queued message is passed on.
   void end() { settle(ended_, true); }
 
-  /// Returns once messages that were pushed earlier are recorded in the old traces.
+  /// Returns once all messages that were pushed earlier are recorded in the old traces.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing);
-  /// A span for a message that is being handed over, of the channels that users ask about: fragments, meshes and tiles.
+  /// Returns a span for a message that is being passed to MPI, if its channel is one that users ask about: fragments,
+  /// meshes and tiles.
   [[nodiscard]] scene::TraceScope traced(const Outgoing& message) const;
 
  private:
@@ -46,9 +47,10 @@ class SendQueue {
   std::mutex mutex_;
   std::condition_variable settled_;
   std::deque<Outgoing> queue_;
-  bool posting_ = false;  ///< messages are between the queue and MPI
+  bool posting_ = false;  ///< messages have left the queue, but are not passed to MPI yet
   bool ended_ = false;
-  scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  ///< changed while nothing is being posted
+  scene::Trace *projecting_ = nullptr,
+               *compositing_ = nullptr;  ///< changed only while no messages are being passed to MPI
 };
 
 }  // namespace tessera::exchange
