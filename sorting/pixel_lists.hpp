@@ -11,21 +11,21 @@ namespace tessera::sorting {
 
 /// The ray segments of a tile, listed pixel by pixel in visibility order.
 ///
-/// The order is total, so it does not depend on the order in which the segments arrived. It is by front, then back,
-/// then, for crossings of surfaces (projection/surface_crossings.hpp), their number and their other fields, then tet
-/// index. In the mode of the `scanline` rasterizer, back replaces front and back (z_back is the key in Juliachs et al.
-/// 2007, 4.3). Lists have any length.
+/// The order is total, so it does not depend on the order in which the segments arrived. Segments are compared by
+/// front, then back, then tet index; crossings of surfaces (projection/surface_crossings.hpp) are compared by their
+/// number and their other fields before the tet index. With Key::back, which the `scanline` rasterizer uses, back
+/// replaces front and back (z_back is the key in Juliachs et al. 2007, 4.3). Lists may have any length.
 class PixelLists {
  public:
   enum class Key { front, back };
 
-  /// Lists segments [0, segments.size) of a tile of `pixel_count` pixels. Segments that arrive nearly in order (by
-  /// their cells' nearest depth) cost one comparison each.
+  /// Builds the lists of segments [0, segments.size) of a tile of `pixel_count` pixels. If segments arrive nearly in
+  /// order (sorted by the nearest depth of their cells), each costs one comparison.
   void sort(const projection::RaySegments& segments, std::size_t pixel_count, Key key = Key::front);
 
-  /// A segment in a list. The key is stored with the index: comparing neighbours then reads no other memory.
+  /// A segment in a list. The key is stored next to the index, so that comparing neighbours reads no other memory.
   struct Entry {
-    double depth;           ///< front, or back with Key::back
+    double depth;           ///< sort key: front, or back with Key::back
     std::uint32_t segment;  ///< index into the segments passed to sort()
   };
 

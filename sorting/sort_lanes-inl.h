@@ -2,11 +2,11 @@
 // Depth order of sixteen (or eight, or four) pixels at once, one pixel per lane. Included once per instruction set
 // (Highway's include guard idiom).
 //
-// What   A key contains a segment's depth and its row in the lane's list. Sorting networks sort the keys of all lanes
-//        at once: an exchange of two rows is a minimum and a maximum, without a branch.
-// How    Batcher's odd-even merge sort in registers, 16 rows at a time; then bitonic merges of these runs.
-// Bits   Keys are only compared: the order is the same on every instruction set.
-// Ends   The caller orders depths whose keys have equal bits (PackedKeys::level()).
+// What   A key contains the depth of a segment and its row in the lane's list. Sorting networks sort the keys of all
+//        lanes at once: an exchange of two rows is a minimum and a maximum, without a branch.
+// How    Batcher's odd-even merge sort in registers, 16 rows at a time; then bitonic merges of the sorted groups.
+// Bits   Keys are only compared, so the order is the same on every instruction set.
+// Ends   The caller must order segments whose keys have equal depth bits (PackedKeys::level()).
 
 #if defined(TESSERA_SORTING_SORT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_SORTING_SORT_LANES_INL_H_
@@ -30,19 +30,20 @@ namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
-/// A row is one vector of keys: element r of every lane's list. Networks in registers sort this many rows.
+/// A row is one vector of keys: row r contains element r of every lane's list. Networks in registers sort this many
+/// rows.
 constexpr int sort_chunk = 16;
 
-/// Beyond this many chunks, a merge of n log^2 n exchanges is slower than sorting lane by lane.
+/// With more chunks than this, a merge of n log^2 n exchanges is slower than sorting lane by lane.
 constexpr int most_sort_chunks = 64;
 
-/// Depth and row in one number, so that an exchange is a minimum and a maximum. The high bits are the distance behind
-/// the lane's nearest depth, as many bits as there is room for; the low bits are the row. Keys are the bits of positive
-/// normal floats, which have the same order.
+/// Depth and row in one number, so that an exchange is a minimum and a maximum. The high bits are the distance from the
+/// lane's nearest depth, with as many bits as are available; the low bits are the row. Keys are the bits of positive
+/// normal floats, which have the same order as the integers.
 class PackedKeys {
  public:
-  /// For depths from `nearest` to `farthest` (per lane, in 32-bit steps; nearest > farthest in an empty lane) in `rows`
-  /// rows, at most most_sort_chunks * sort_chunk.
+  /// Makes keys for depths from `nearest` to `farthest` (one pair per lane, in 32-bit steps; nearest > farthest in an
+  /// empty lane) in `rows` rows, at most most_sort_chunks * sort_chunk.
   HWY_INLINE PackedKeys(VI nearest, VI farthest, std::size_t rows) : nearest_(nearest) {
     const DI d;
     const hn::RebindToUnsigned<DI> bits;
@@ -60,13 +61,13 @@ class PackedKeys {
     const VI number = Set(d, static_cast<std::int32_t>(row));
     return Or(AndNot(row_mask_, BitCast(d, shifted)), number) + Set(d, least_normal);
   }
-  /// A key behind all others, for rows beyond a list's end.
+  /// Returns a key that is greater than all others, for rows beyond the end of a list.
   static HWY_INLINE VI behind_all(std::size_t row) {
     return Set(DI(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
   }
-  /// The row that a key was packed with; unspecified for keys of behind_all().
+  /// Returns the row in a key; unspecified for keys of behind_all().
   HWY_INLINE VI row(VI key) const { return And(key, row_mask_); }
-  /// Whether two keys have equal depth bits, so that they do not decide which depth is nearer.
+  /// Whether two keys have equal depth bits, so that the keys do not determine which depth is nearer.
   HWY_INLINE MI level(VI a, VI b) const { return Xor(a, b) < row_mask_ + Set(DI(), 1); }
 
  private:
@@ -77,7 +78,7 @@ class PackedKeys {
   int up_;
 };
 
-/// The comparators of a network, in order.
+/// The comparators of a network, in the order in which they are applied.
 template <int size>
 struct Network {
   int count = 0;
@@ -96,7 +97,7 @@ constexpr Network<64> odd_even_merge_sort() {
   return n;
 }
 
-/// Sorts 16 elements that ascend and then descend.
+/// The last stage of a bitonic sort: sorts 16 elements that first ascend and then descend.
 constexpr Network<32> bitonic_merge() {
   Network<32> n;
   for (int stride = sort_chunk / 2; stride >= 1; stride /= 2)
@@ -131,7 +132,7 @@ HWY_INLINE void run_on_rows(float* keys) {
   for (int i = 0; i < sort_chunk; ++i) StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
 }
 
-/// Compares and exchanges rows `low` + i and `high` + i (reversed: `high` - i), i < rows.
+/// Compares and exchanges rows `low` + i and `high` + i (if `reversed`: `high` - i), for all i < rows.
 template <bool reversed>
 HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   const DF d;
@@ -144,13 +145,14 @@ HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   }
 }
 
-/// Sorts every lane's keys in ascending order: `chunks` (1 to most_sort_chunks) times 16 rows; shorter lists are padded
-/// with keys of behind_all(). Not stable. Sorting 16 rows takes 63 exchanges of two instructions for all lanes, which
-/// is about half an instruction per element with 16 lanes. Each doubling of the rows adds two thirds of that or more.
+/// Sorts every lane's keys in ascending order. There are `chunks` (1 to most_sort_chunks) times 16 rows; shorter lists
+/// must be padded with keys of behind_all(). Not stable. Sorting 16 rows takes 63 exchanges of two instructions for all
+/// lanes, which is about half an instruction per element with 16 lanes. Each doubling of the rows adds at least two
+/// thirds of that.
 ///
-/// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons have the same direction.
-/// Rows beyond the last would contain the largest keys, so that comparisons with them would exchange nothing and are
-/// left out.
+/// Sorted groups of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons have the same
+/// direction. Rows beyond the last would contain the largest keys. Comparisons with these rows would exchange nothing,
+/// and are left out.
 HWY_INLINE void sort_lanes(float* keys, int chunks) {
   const auto row = static_cast<std::size_t>(hn::Lanes(DF()));
   const auto at = [&](int chunk) { return static_cast<std::size_t>(chunk * sort_chunk) * row; };

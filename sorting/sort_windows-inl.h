@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth order of the windows from which the default frame is composited: the lists of as many neighbouring pixels at
-// once as a vector has lanes. Included once per instruction set (Highway's include guard idiom).
+// Depth order of the windows (projection::SegmentWindows) on the integer lattice: sorts the lists of as many
+// neighbouring pixels at once as a vector has lanes. Included once per instruction set (Highway's include guard idiom).
 //
-// What   For every lane, the slots of its pixel's segments in the order of before(): front, back, then the scalars.
-// How    The networks of sort_lanes-inl.h order keys of the fronts. Segments whose keys have equal depth bits, and
-//        lists longer than the networks, are sorted lane by lane.
+// What   Finds, for every lane, the slots of its pixel's segments in the order of before(): front, back, then the
+//        scalars.
+// How    The networks of sort_lanes-inl.h sort keys that contain the fronts. Segments whose keys have equal depth bits,
+//        and lists longer than the networks, are sorted lane by lane.
 // Ends   Segments with equal fields are interchangeable: any order of them gives the same pixel.
 
 #if defined(TESSERA_SORTING_SORT_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -30,12 +31,12 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 
-/// The segment `slot` bytes behind `list`. Slots are in bytes because this saves a shift in the address.
+/// Returns the segment that is `slot` bytes after `list`. Slots are in bytes because this saves a shift in the address.
 HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
   return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
 }
 
-/// A pixel's list: where it begins, and its lights; null: not lit.
+/// A pixel's list: its first segment, and its first light; the latter is null if segments have no lights.
 struct PixelList {
   const projection::LatticeSegment* segments;
   const projection::SegmentLight* lights;
@@ -43,14 +44,15 @@ struct PixelList {
   HWY_INLINE PixelList of_lane(std::size_t lane) const {
     return {segments + lane, lights != nullptr ? lights + lane : nullptr};
   }
-  /// A light is half as long as a segment.
+  /// A light is half as long as a segment, so its offset is half of the slot.
   HWY_INLINE const projection::SegmentLight& light_at(std::int32_t slot) const {
     static_assert(2 * sizeof(projection::SegmentLight) == sizeof(projection::LatticeSegment));
     return *reinterpret_cast<const projection::SegmentLight*>(reinterpret_cast<const char*>(lights) + slot / 2);
   }
 };
 
-/// Order of one pixel's segments: front, back, the scalars, then the light. Segments equal in all are interchangeable.
+/// Whether segment a precedes segment b of the same pixel: by front, back, the scalars, then the light. Segments that
+/// are equal in all of these are interchangeable.
 HWY_INLINE bool before(const PixelList& list, std::int32_t slot_a, std::int32_t slot_b) {
   const projection::LatticeSegment &a = segment_at(list.segments, slot_a), &b = segment_at(list.segments, slot_b);
   if (a.front != b.front) return a.front < b.front;
@@ -61,11 +63,11 @@ HWY_INLINE bool before(const PixelList& list, std::int32_t slot_a, std::int32_t 
   return on_a.own != on_b.own ? on_a.own < on_b.own : on_a.white < on_b.white;
 }
 
-/// The lanes whose lists have this row.
+/// Returns the lanes whose lists have this row.
 HWY_INLINE MI has_row(std::size_t row, VI count) { return Set(DI(), static_cast<std::int32_t>(row)) < count; }
 
-/// Completes the order of a list that the network left nearly sorted: keys contain only the front, and not always all
-/// of its bits.
+/// Completes the order of a list that the network has left nearly sorted: keys contain only the front, and not always
+/// all of its bits.
 HWY_NOINLINE inline void settle_ties(const PixelList& list, std::size_t count, std::size_t lanes, std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t slot = slots[i * lanes];
@@ -76,7 +78,7 @@ HWY_NOINLINE inline void settle_ties(const PixelList& list, std::size_t count, s
   }
 }
 
-/// Sorts one lane's list that is too long for the networks.
+/// Sorts the list of one lane if the list is too long for the networks.
 HWY_NOINLINE inline void sort_long(const PixelList& list, std::size_t stride, std::size_t count, std::size_t lanes,
                                    std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
@@ -85,9 +87,9 @@ HWY_NOINLINE inline void sort_long(const PixelList& list, std::size_t stride, st
   for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
 }
 
-/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `lists` begins
-/// with the first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns
-/// the number of rows, which is the length of the longest list.
+/// Sorts the lists of as many consecutive pixels as a vector has lanes, one list per lane. `lists` is the list of the
+/// first pixel. `stride` and `counts` are those of the windows; `counts` begins with that pixel. Returns the number of
+/// rows, which is the length of the longest list.
 HWY_INLINE std::size_t sort_windows(const PixelList& lists, std::size_t stride, const std::uint32_t* counts,
                                     WindowOrder& order) {
   const projection::LatticeSegment* const list = lists.segments;
@@ -118,7 +120,7 @@ HWY_INLINE std::size_t sort_windows(const PixelList& lists, std::size_t stride, 
     const auto here = has_row(row, count);
     nearest = Min(nearest, IfThenElse(here, front, nearest));
     farthest = Max(farthest, IfThenElse(here, front, farthest));
-    // The fronts, until the sorted slots replace them; values beyond a list's end are not used.
+    // These are the fronts, until the sorted slots replace them; values beyond a list's end are not used.
     StoreU(front, d, slots + row * lanes);
   }
   const PackedKeys packed(nearest, farthest, rows);

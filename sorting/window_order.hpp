@@ -6,12 +6,12 @@
 
 namespace tessera::sorting {
 
-/// Depth order of the windows (projection::SegmentWindows) of a group of neighbouring pixels, one pixel per lane, as
-/// sort_windows-inl.h returns it: `slots[row * lanes + lane]` is the position of segment number `row` in the lane's
-/// list, in bytes from the list's beginning.
+/// Depth order of the windows (projection::SegmentWindows) of a group of neighbouring pixels, one pixel per lane.
+/// sort_windows-inl.h computes it: `slots[row * lanes + lane]` is the position of the segment with number `row` in the
+/// lane's list, in bytes from the beginning of the list.
 struct WindowOrder {
   std::vector<std::int32_t> slots;
-  std::vector<float> keys;  ///< working memory, of the same shape
+  std::vector<float> keys;  ///< working memory of the same size
 };
 
 }  // namespace tessera::sorting

@@ -11,8 +11,8 @@
 
 namespace tessera::sorting {
 
-/// An element of the sorting texture: a ray segment as in Juliachs et al. 2007, 4.3. TextureTie, in a second texture,
-/// orders segments of equal depth.
+/// An element of the sorting texture: a ray segment as in Juliachs et al. 2007, 4.3. The corresponding TextureTie, in a
+/// second texture, orders segments of equal depth.
 struct TextureSegment {
   float scalar_front, scalar_back, length, z_back;
 };
@@ -25,8 +25,8 @@ struct TextureTie {
 /// 2^(ceil(log2 S) + 1), which is one too large, and its null elements are {0, 0, 0, 0}, which assumes z_back > 0.
 /// Here, the z_back of a null element is null_depth.
 ///
-/// A list longer than the width of the texture takes several rows. This removes the paper's limit on depth complexity;
-/// fewer lists fit into one texture instead.
+/// A list longer than the width of the texture takes several rows. So depth complexity is not limited as in the paper;
+/// instead, fewer long lists fit into one texture.
 class GlBitonicTexture {
  public:
   static constexpr float null_depth = -3.4e38f;
@@ -34,20 +34,21 @@ class GlBitonicTexture {
   /// `limit`: largest side of a texture; 0: the largest that the device supports.
   explicit GlBitonicTexture(const gl::Context& context, int limit = 0);
 
-  /// The vertex stage of a triangle that covers the viewport; its output `column` is the instance number.
+  /// Returns the vertex stage of a triangle that covers the viewport; the output `column` of this stage is the instance
+  /// number.
   static gl::ShaderSource whole_target();
 
-  /// The layout of lists of up to `longest` elements in the texture. Throws Error(system_failure) if one list does not
-  /// fit.
+  /// How lists of up to `longest` elements are arranged in the texture. layout() throws Error(system_failure) if one
+  /// list does not fit.
   struct Layout {
-    std::uint32_t log2_size, log2_width;  ///< of a padded list, and of a row, in elements
-    int rows_a_list, lists;               ///< rows of a list; lists that fit into the texture
+    std::uint32_t log2_size, log2_width;  ///< log2 of the elements of a padded list, and of a row
+    int rows_a_list, lists;               ///< rows per list; number of lists that fit into the texture
     [[nodiscard]] std::size_t stride() const { return std::size_t{1} << log2_size; }
   };
   [[nodiscard]] Layout layout(std::uint32_t longest) const;
 
-  /// Uploads `lists` padded lists, one after the other with the layout's stride, and sorts them. Afterwards the
-  /// textures are bound to units 0 and 1. Returns the number of passes.
+  /// Uploads `lists` padded lists, which follow each other with the layout's stride, and sorts them. Afterwards the
+  /// sorted textures are bound to units 0 and 1. Returns the number of passes.
   std::uint32_t sort(const Layout& layout, int lists, std::span<const TextureSegment> segments,
                      std::span<const TextureTie> ties);
   /// The ties in sorted order, list after list, in rows of 2^Layout::log2_width elements.

@@ -5,8 +5,8 @@
 
 namespace tessera::sorting {
 
-/// The sort key on a device: `front`, then `back`, then `tie`, each an unsigned integer in the order of the value that
-/// it encodes. The element's number comes last and makes the order total.
+/// The sort key on a device: `front`, then `back`, then `tie`. Each is an unsigned integer with the same order as the
+/// value that it encodes. The number of the element comes last and makes the order total.
 struct GlKey {
   std::uint32_t front, back, tie, element;
 };

@@ -20,8 +20,8 @@ static_assert(sizeof(GlList) == 8);
 /// Sorts many lists of any length at once by compute shaders: bitonic networks in shared memory for pieces of up to
 /// 1024 elements, then as many merge passes as the longest list needs, alternating between two buffers.
 ///
-/// Only for the context's thread. plan() comes before sort(), so that its tables can be uploaded together with the
-/// keys.
+/// May only be used on the context's thread. plan() must be called before sort(), so that its tables can be uploaded
+/// together with the keys.
 class GlListSort {
  public:
   static constexpr std::uint32_t piece_size = 1024;
@@ -31,11 +31,11 @@ class GlListSort {
   /// Prepares the passes for these lists. The caller then copies `tables()` into a device buffer.
   void plan(std::span<const GlList> lists);
   [[nodiscard]] std::span<const std::uint32_t> tables() const { return tables_; }
-  /// Which of the two buffers contains a list of this length after sorting.
+  /// Returns which of the two buffers contains a list of `count` elements after sorting.
   [[nodiscard]] static std::uint32_t buffer_of(std::uint32_t count);
 
-  /// Queues the passes. `keys` contains the unsorted keys; the sorted ones are in `buffers[buffer_of(count)]`, each
-  /// list in the range that it had before. Returns the number of passes over the elements.
+  /// Queues the passes. `keys` contains the unsorted keys. Afterwards, a sorted list of `count` elements is in
+  /// `buffers[buffer_of(count)]`, in the range that it had before. Returns the number of passes over the elements.
   std::uint32_t sort(const gl::Buffer& keys, const gl::Buffer* const (&buffers)[2], const gl::Buffer& tables) const;
 
  private:
@@ -49,7 +49,7 @@ class GlListSort {
   gl::Program sort_, merge_;
   std::vector<std::uint32_t> tables_;
   std::vector<Pieces> pieces_;  ///< index: log2 of the size of a piece, rounded up
-  std::vector<Merges> merges_;  ///< index: the pass; `first` counts entries of four integers
+  std::vector<Merges> merges_;  ///< index: the pass; `first` counts table entries of four integers
 };
 
 }  // namespace tessera::sorting
