@@ -6,7 +6,7 @@
 
 namespace tessera::compositor {
 
-/// The float nearest to a number, and never infinite.
+/// Returns the finite float nearest to a number.
 inline float finite_float(double value) {
   constexpr double most = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -most, most));

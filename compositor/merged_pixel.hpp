@@ -8,14 +8,14 @@
 
 namespace tessera::compositor {
 
-/// A pixel of a tile while final fragments are composited into it, front to back: premultiplied linear RGB, and where
-/// it becomes visible, as a planar depth (world units).
+/// A pixel of a tile while final fragments are composited into it, front to back: its premultiplied linear RGB, and the
+/// planar depth (world units) where it becomes visible.
 struct MergedPixel {
   double red = 0, green = 0, blue = 0, opacity = 0;
   double first_depth = std::numeric_limits<double>::infinity();
   bool open = true;  ///< false: segments behind it would not be visible
 
-  /// Adds light of this opacity behind the pixel's present contents.
+  /// Adds light and its opacity behind the pixel's present contents.
   void add(double r, double g, double b, double its_opacity) {
     const double weight = 1 - opacity;
     red += weight * r, green += weight * g, blue += weight * b;
@@ -31,7 +31,7 @@ struct MergedPixel {
   }
 };
 
-/// The image of a tile of that size, row by row.
+/// Returns an image of a tile of that size; `pixels` are ordered row by row.
 inline scene::Image image_of(const std::vector<MergedPixel>& pixels, scene::ImageSize size) {
   scene::Image image(size);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].write(image, i);

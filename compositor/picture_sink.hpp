@@ -6,7 +6,8 @@
 
 namespace tessera::compositor {
 
-/// Pixels of an image. The window's image must outlive the sink; its tiles are disjoint, so threads may share it.
+/// Computes pixels and writes them to an image. The window's image must outlive the sink. Tiles are disjoint, so
+/// threads may share the image.
 template <class Encoding>
 class PictureSink final : public TileSink<Encoding> {
  public:
@@ -34,7 +35,7 @@ class PictureSink final : public TileSink<Encoding> {
   TilePixels<Encoding> pixels_;
   ImageWindow window_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
 };
 
 /// Writes the values of the pixels of `rect` to the window's image.

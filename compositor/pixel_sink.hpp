@@ -9,8 +9,9 @@
 
 namespace tessera::compositor {
 
-/// Finished pixels of whole tiles, which a tile's compositor passes on unchanged: from a process that has all cells of
-/// its tiles. One part per tile, RecordKind::pixels; the pixels are those of PictureSink.
+/// Sends the finished pixels of whole tiles, from a process that has all cells of these tiles. A tile's compositor
+/// passes the pixels on unchanged. Each tile is one part of kind RecordKind::pixels; the pixels are those of
+/// PictureSink.
 template <class Encoding>
 class PixelSink final : public FragmentSink<Encoding> {
  public:
@@ -18,7 +19,7 @@ class PixelSink final : public FragmentSink<Encoding> {
   using typename FragmentSink<Encoding>::Store;
   using typename FragmentSink<Encoding>::Depth;
 
-  /// `packs(tile)`: whether the tile's pixels are worth packing, because they leave the process.
+  /// `packs(tile)` returns whether the tile's pixels should be packed, because they leave the process.
   PixelSink(const TileScene& scene, std::function<bool(std::size_t tile)> packs, Deliver deliver)
       : FragmentSink<Encoding>(exchange::RecordKind::pixels, std::move(deliver)),
         pixels_(scene, false),
@@ -43,7 +44,7 @@ class PixelSink final : public FragmentSink<Encoding> {
   std::function<bool(std::size_t tile)> packs_;
   std::size_t tile_ = 0;
   scene::PixelRect tile_rect_{0, 0, 0, 0}, rect_{0, 0, 0, 0};
-  scene::Image image_;  ///< the tile's
+  scene::Image image_;  ///< the pixels of the tile
   std::uint64_t segments_here_ = 0;
 };
 

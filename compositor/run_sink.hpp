@@ -6,12 +6,12 @@
 
 namespace tessera::compositor {
 
-/// Exchange::runs: segments of a pixel that touch end to end become one fragment. Cells never intersect, so no other
-/// process has a segment inside a run, and compositing it here is exact. A convex part of a mesh sends one fragment per
-/// pixel, whatever its number of cells.
+/// Implements Exchange::runs: segments of a pixel that touch end to end become one fragment. Cells never intersect, so
+/// no other process has a segment inside a run, and compositing the run here is exact. A convex part of a mesh sends
+/// one fragment per pixel, whatever its number of cells.
 ///
-/// Runs without light and optical depth are not sent, and a run begins where it first becomes visible. Pixels that this
-/// process's own cells make opaque are closed.
+/// Runs without light and optical depth are not sent, and a run begins where it first becomes visible. Pixels that
+/// become opaque by the cells of this process are closed.
 template <class Encoding>
 class RunSink final : public FragmentSink<Encoding> {
  public:
@@ -19,15 +19,15 @@ class RunSink final : public FragmentSink<Encoding> {
   using typename FragmentSink<Encoding>::Store;
   using typename FragmentSink<Encoding>::Depth;
 
-  /// After `bytes_between_cuts` of a tile's records, runs are cut, so that the tile's compositor can be informed how
-  /// far the tile is complete.
+  /// Whenever the records of a tile have grown by `bytes_between_cuts`, runs are cut, so that this sink can report to
+  /// the tile's compositor up to which depth the tile is complete.
   RunSink(const TileScene& scene, std::uint64_t bytes_between_cuts, Deliver deliver);
 
   void begin_tile(std::size_t tile, const scene::PixelRect& rect) override;
   void start(const scene::PixelRect& rect) override;
   void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) override;
-  /// Runs become shorter, and no pixel of the rectangle is closed any longer, because the segments that hide it may be
-  /// behind later ones.
+  /// After this, runs are shorter, and no pixel of the rectangle is closed: segments that hide it may belong behind
+  /// segments that come later.
   bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) override;
   [[nodiscard]] const typename Encoding::Open& open() const override { return pixels_.open(); }
   [[nodiscard]] bool any_open() const override { return pixels_.any_open(); }
@@ -43,7 +43,7 @@ class RunSink final : public FragmentSink<Encoding> {
 
   TileScene scene_;
   TilePixels<Encoding> pixels_;
-  std::uint64_t bytes_between_cuts_, bytes_since_cut_ = 0;  ///< of the tile
+  std::uint64_t bytes_between_cuts_, bytes_since_cut_ = 0;  ///< bytes of the tile's records since the last cut
 };
 
 }  // namespace tessera::compositor

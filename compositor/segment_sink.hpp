@@ -9,7 +9,7 @@
 
 namespace tessera::compositor {
 
-/// A sink that sends every segment unchanged: nothing is integrated, so no pixel is known to be opaque.
+/// Sends every segment unchanged. Nothing is integrated, so the sink cannot determine whether a pixel is opaque.
 template <class Encoding>
 class RawSink : public FragmentSink<Encoding> {
  public:
@@ -28,23 +28,23 @@ class RawSink : public FragmentSink<Encoding> {
   using FragmentSink<Encoding>::FragmentSink;
 
  private:
-  /// Appends the records of segments before `final_depth` and removes them; returns their number.
+  /// Appends the records of segments before `final_depth` and removes these segments; returns their number.
   virtual std::uint64_t write(Store& store, Depth final_depth, exchange::PartWriter& writer) = 0;
   [[nodiscard]] virtual double planar(Depth depth) const = 0;
 
   typename Encoding::Open open_{};
 };
 
-/// Exchange::segments: every ray segment, as the encoding's records (exchange/wire.hpp).
+/// Implements Exchange::segments: sends every ray segment in the encoding's records (exchange/wire.hpp).
 template <class Encoding>
 class SegmentSink;
 
-/// As chains of touching segments.
+/// Sends segments as chains of touching segments.
 template <>
 class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
  public:
-  /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
-  /// sink. `normals`: sent with the segments; null: not sent. Cell data have none.
+  /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: the index is t. Must outlive
+  /// the sink. `normals` are sent with the segments; null: no normals are sent. Cell data have no normals.
   SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver,
               const projection::CellNormals* normals = nullptr)
       : RawSink(cell_data            ? exchange::RecordKind::chains_of_cells
@@ -64,11 +64,11 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
   const projection::CellNormals* normals_;
 };
 
-/// Unsorted, because the compositor sorts: always copies all segments.
+/// Does not sort segments, because the compositor sorts them: always copies all segments.
 template <>
 class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
  public:
-  /// `lit`: the windows have the segments' lights, which are sent along.
+  /// `lit`: the windows contain the lights of segments, which are sent along.
   SegmentSink(const scene::Lattice& lattice, Deliver deliver, bool lit = false)
       : RawSink(lit ? exchange::RecordKind::lit_lattice : exchange::RecordKind::lattice, std::move(deliver)),
         lattice_(lattice) {}
@@ -80,11 +80,11 @@ class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
   scene::Lattice lattice_;
 };
 
-/// Exchange::segments of the scanline rasterizer: the 4-tuples of Juliachs et al. 2007, 4.2, in the order of their
-/// cells.
+/// Implements Exchange::segments for the scanline rasterizer: sends the 4-tuples of Juliachs et al. 2007, 4.2, in the
+/// order of their cells.
 class TupleSink final : public RawSink<DoubleEncoding> {
  public:
-  /// `longest_edge`: of the whole mesh, world units.
+  /// `longest_edge` is that of the whole mesh, in world units.
   TupleSink(float longest_edge, Deliver deliver)
       : RawSink(exchange::RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
 

@@ -2,11 +2,13 @@
 // The light of surface crossings, one crossing per lane. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What      Blinn-Phong with a light at the eye, as in scene::SurfaceSet::light(): with the cosine c of ray and normal,
+// What      Computes Blinn-Phong with a light at the eye, as in scene::SurfaceSet::light(). With the cosine c between
+//           ray and normal,
 //             light = opacity (color (ambient + diffuse c) + specular c^shininess).
-//           A crossing's mark contains c and the number of its surface, which determines color and opacity
+//           The mark of a crossing contains c and the number of the surface, which determines color and opacity
 //           (LatticeMark).
-// Accuracy  Double precision, for a cosine with the bits of LatticeMark; integer powers by repeated squaring.
+// Accuracy  Double precision; the cosine has the bits of LatticeMark; integer powers are computed by
+//           repeated squaring.
 
 #if defined(TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_
@@ -33,7 +35,7 @@ using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a seg
 using namespace scene::HWY_NAMESPACE;      // doubles, packing
 constexpr std::size_t most_lanes = MaxLanes(DI());
 
-/// The surface numbers of marks.
+/// Returns the surface numbers of marks.
 HWY_INLINE VI number_of(VF mark) {
   using Mark = projection::LatticeMark;
   const DI d;
@@ -63,7 +65,7 @@ class SurfaceLights {
     red = light(paint.red), green = light(paint.green), blue = light(paint.blue);
   }
 
-  /// The light of a surface composited over `behind`.
+  /// Composites the light of a surface over `behind`.
   [[nodiscard]] HWY_INLINE Doubles before(const Doubles& of_surface, const Doubles& behind) const {
     return of_surface + (doubles(1) - opacity) * behind;
   }

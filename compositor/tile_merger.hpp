@@ -24,34 +24,36 @@ namespace tessera::compositor {
 
 class GlCompositor;
 
-/// The frame data of a compositor. All of it must outlive the mergers.
+/// What a compositor's mergers need to know about a frame. All of it must outlive the mergers.
 struct MergeContext {
   const projection::PixelSpace* space;
   const integrals::SegmentIntegrator* integrator;
   double max_color, longest_ray;
-  float longest_edge;  ///< tuples: the unit of their lengths
+  float longest_edge;  ///< tuples: unit of their lengths
   scene::Emission emission;
-  std::uint64_t budget_bytes;                         ///< for the fragments of one tile that cannot be composited yet
-  const scene::TransferFunction* function = nullptr;  ///< with deep samples
-  double deep_accuracy = 0;                           ///< > 0: also make deep samples from segments (deep_sink.hpp)
-  std::optional<Peel> peel{};                         ///< if set, the deep samples are layers (peel_sink.hpp)
-  // Lattice segments:
+  std::uint64_t budget_bytes;  ///< memory for the fragments of one tile that cannot be composited yet
+  const scene::TransferFunction* function = nullptr;  ///< only set for deep samples
+  double deep_accuracy = 0;    ///< > 0: the merger also makes deep samples from segments (deep_sink.hpp)
+  std::optional<Peel> peel{};  ///< if set, the deep samples are layers (peel_sink.hpp)
+  // For lattice segments:
   const scene::Lattice* lattice = nullptr;
-  const integrals::LaneTable* table = nullptr;  ///< on that lattice
+  const integrals::LaneTable* table = nullptr;  ///< table on that lattice
   scene::Trace* trace = nullptr;
-  // On a device (gl_merger.hpp), which needs a table and units (in `lattice`) for all frames:
+  // For a device (gl_merger.hpp), which needs a table and units (in `lattice`) for all frames:
   GlCompositor* device = nullptr;
-  bool on_lattice = true;  ///< false: `lattice` is device_units()
+  bool on_lattice = true;  ///< false: `lattice` contains device_units()
   std::uint32_t frame = 0;
-  /// If not null, the CPU takes over when the device fails, and this is set.
+  /// If not null, the CPU takes over when the device fails, and the flag is set to true.
   std::atomic<bool>* device_failed = nullptr;
-  std::atomic<std::uint64_t>* segments = nullptr;  ///< counts segments that the device makes of cells; may be null
-  /// Set to true if runs of a pixel overlap, so that no order of them is right; may be null.
+  std::atomic<std::uint64_t>* segments =
+      nullptr;  ///< counts the segments that the device makes from cells; may be null
+  /// Set to true if runs of a pixel overlap, because they then have no correct order; may be null.
   std::atomic<bool>* overlapping = nullptr;
-  const scene::SurfaceSet* surfaces = nullptr;     ///< in the volume; null: none
-  const projection::MatterLight* light = nullptr;  ///< on the matter of a mesh, by the CPU; null: none
+  const scene::SurfaceSet* surfaces = nullptr;  ///< surfaces inside the volume; null: none
+  const projection::MatterLight* light =
+      nullptr;  ///< lighting of the matter of a mesh, computed by the CPU; null: none
 
-  /// An upper bound of the light behind a pixel of transmittance 1.
+  /// An upper bound of the light that can be behind a transmittance of 1.
   [[nodiscard]] double opacity_weight() const {
     const double brightest = light != nullptr ? light->brightest(max_color) : max_color;
     const double weight = integrals::opacity_weight(brightest, longest_ray, emission);
@@ -61,39 +63,39 @@ struct MergeContext {
 
 /// A finished tile.
 struct MergedTile {
-  scene::Image image;  ///< its first pixel at (0, 0)
-  /// Deep samples, row by row: the number in each pixel, and all samples. Empty if not requested.
+  scene::Image image;  ///< its pixel (0, 0) is the first pixel of the tile
+  /// Deep samples, row by row: the number of samples of each pixel, and all samples. Empty if not requested.
   std::vector<std::uint32_t> deep_counts;
   std::vector<scene::DeepImageSample> deep_samples;
-  /// The tile's pixels as bytes (exchange/packed_pixels.hpp), instead of the image.
+  /// If not empty, replaces `image`: the tile's pixels as bytes (exchange/packed_pixels.hpp).
   exchange::Bytes pixels{};
 };
 
 /// Computes one tile of the image from the fragments of all projectors.
 ///
-/// Parts may arrive in any order; the image does not depend on it because fragments have a total order: segments by
-/// (front, back, tet), runs by all their fields. One merger is used by one thread at a time.
+/// Parts may arrive in any order. The image does not depend on this order because fragments have a total order:
+/// segments by (front, back, tet), runs by all their fields. A merger may be used by only one thread at a time.
 class TileMerger {
  public:
   virtual ~TileMerger() = default;
 
-  /// Takes a part's records. Throws Error(system_failure) for a malformed part, or if the tile needs more memory than
-  /// the budget.
+  /// Takes the records of a part. Throws Error(system_failure) if the part is malformed, or if the tile needs more
+  /// memory than the budget.
   virtual void add(const exchange::TilePart& part) = 0;
 
-  /// Composites all fragments before this planar depth; all of these must have been added.
+  /// Composites all fragments before this planar depth; all of these fragments must have been added.
   virtual void advance(double final_depth) = 0;
 
-  /// Called after advance(infinity).
+  /// Returns the tile. Must be called after advance(infinity).
   virtual MergedTile finish() = 0;
 };
 
-/// Adds parts, which must be sorted by start_depth, and advances to `final_depth`, in steps that stay well within a
-/// merger's budget (a segment takes five times its bytes in the message).
+/// Adds parts, which must be sorted by `start_depth`, and advances the merger to `final_depth`. This is done in steps
+/// that stay well within a merger's budget (in memory, a segment takes five times its bytes in the message).
 void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, double final_depth,
            std::uint64_t budget_bytes);
 
-/// A merger for parts of this kind.
+/// Makes a merger for parts of this kind.
 std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const MergeContext& context,
                                              const scene::PixelRect& rect);
 

@@ -15,43 +15,44 @@
 
 namespace tessera::compositor {
 
-/// A pixel of an image: premultiplied linear RGB, opacity, and the planar depth at which it becomes visible, in world
-/// units; infinite if it is empty.
+/// A pixel of an image: premultiplied linear RGB, opacity, and the planar depth at which the pixel becomes visible, in
+/// world units; the depth is infinite if the pixel is empty.
 struct PixelValue {
   double red, green, blue, opacity, depth;
 };
 
-/// A crossing of a surface among the segments of a batch. It is not a segment; its light is set afterwards.
+/// A crossing of a surface in a batch of segments. It takes the place of a segment; its light is set after integration.
 struct CrossingInBatch {
   std::size_t at;
   projection::Crossing crossing;
-  double value;  ///< the field's value there, or the surface's
+  double value;  ///< the field's value at the crossing, or the value of the surface
 };
-/// Applies the light on its tet to segment `at` of a batch, after integration.
+/// Applies the light that falls on the tet of segment `at` of a batch. Must be called after integration.
 inline void light_segment(const projection::MatterLight::Light& light, std::size_t at, double optical_depth,
                           integrals::SegmentBatch& batch) {
   const double white = light.white * -std::expm1(-optical_depth);
   for (auto* color : {&batch.red, &batch.green, &batch.blue}) (*color)[at] = light.own * (*color)[at] + white;
 }
 
-/// Sets the light of crossings, which were integrated as segments of length zero.
+/// Sets the light of crossings, which the integrator has treated as segments of length zero.
 void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
                      integrals::SegmentBatch& batch);
 
-/// The pixels of a rectangle while segments are composited into them, front to back: the whole ray of each as one run,
-/// or (`runs`) a new run wherever a segment does not touch the previous one.
+/// The pixels of a rectangle while segments are composited into them, front to back. The whole ray of a pixel is one
+/// run; with `runs`, a new run begins wherever a segment does not touch the previous one.
 ///
-///   start(rect)                          all pixels empty and open
+///   start(rect)                          makes all pixels empty and open
 ///   take(store, final, at_least, timer)  composites the final segments and removes them; returns the number removed
-///   open(), any_open()                   a pixel is closed, and accepts no more segments, once everything behind it
-///                                        changes it by less than the integrator's termination error
-///   value(p)                             a pixel of an image
-///   ended, end_runs()                    runs: the visible ones that have ended; ends all
-///   keep_open()                          runs: no pixel is closed until the next start(), because the segments that
-///                                        hide it may be behind later ones
+///   open(), any_open()                   the pixels that are open. A pixel is closed, and accepts no more segments,
+///                                        once everything behind its segments would change it by less than the
+///                                        integrator's termination error
+///   value(p)                             returns a pixel of an image
+///   ended, end_runs()                    with runs: the visible runs that have ended; ends all runs
+///   keep_open()                          with runs: no pixel is closed until the next start(), because segments that
+///                                        hide the pixel may belong behind segments that come later
 ///
 /// There are two specializations, because each encoding has its own arithmetic: lists of doubles here, and on the
-/// lattice one pixel per lane (window_kernel.hpp). compositor/README.md has the gain of the second.
+/// lattice one pixel per lane (window_kernel.hpp). compositor/README.md states how much faster the second one is.
 template <class Encoding>
 class TilePixels;
 
@@ -60,12 +61,12 @@ class TilePixels;
 template <>
 class TilePixels<sorting::DoubleEncoding> {
  public:
-  /// Runs touch if the back of one equals the front of the other bit for bit: neighbouring cells compute a shared face
-  /// from the same numbers.
+  /// Runs touch if the back of one run equals the front of the other bit for bit. This holds for neighbouring cells,
+  /// which compute a shared face from the same numbers.
   struct Run {
     std::uint32_t pixel = 0;
-    bool begun = false;                                      ///< false: no segment yet
-    double front = std::numeric_limits<double>::infinity();  ///< where it becomes visible
+    bool begun = false;                                      ///< false: the run has no segment yet
+    double front = std::numeric_limits<double>::infinity();  ///< depth where the run becomes visible
     double back = 0;
     double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
     [[nodiscard]] bool visible() const { return optical_depth > 0 || red != 0 || green != 0 || blue != 0; }
@@ -100,7 +101,7 @@ class TilePixels<sorting::DoubleEncoding> {
   bool runs_, closes_ = true;
   scene::PixelRect rect_{0, 0, 0, 0};
   std::vector<Run> pixels_;
-  std::vector<double> transmittance_;  ///< of each ray: the product over its runs so far
+  std::vector<double> transmittance_;  ///< transmittance of each ray: the product over its runs so far
   std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
@@ -131,7 +132,7 @@ class TilePixels<sorting::LatticeEncoding> {
   void end_runs();
   [[nodiscard]] PixelValue value(std::size_t pixel) const;
 
-  /// Runs that have ended are in state().ended; the others can be read there, too.
+  /// state().ended contains the runs that have ended; the other runs can be read from the state, too.
   [[nodiscard]] WindowState& state() { return state_; }
 
  private:

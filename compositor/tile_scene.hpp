@@ -11,26 +11,26 @@
 
 namespace tessera::compositor {
 
-/// The frame data of sinks and mergers that integrate segments. All of it must outlive them.
+/// What sinks and mergers that integrate segments need to know about a frame. All of it must outlive them.
 struct TileScene {
   const projection::PixelSpace* space;
   const integrals::SegmentIntegrator* integrator;
   double left_out_per_transmittance;  ///< integrals::opacity_weight()
-  // On the lattice:
+  // For the lattice:
   const integrals::LaneTable* table = nullptr;
   scene::Lattice lattice{};
-  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
-  // In double precision:
-  const projection::MatterLight* light = nullptr;    ///< on the matter; null: none
-  const projection::CellNormals* normals = nullptr;  ///< with light: the normals of the segments' tets
+  const scene::SurfaceSet* surfaces = nullptr;  ///< surfaces inside the volume; null: none
+  // For double precision:
+  const projection::MatterLight* light = nullptr;    ///< lighting of the matter; null: none
+  const projection::CellNormals* normals = nullptr;  ///< with `light`: the normals of the segments' tets
 
-  /// Behind a lower transmittance, nothing changes a pixel by the integrator's termination error.
+  /// Behind a lower transmittance, nothing can change a pixel by the integrator's termination error or more.
   [[nodiscard]] double least_transmittance() const {
     return integrator->termination_error() / left_out_per_transmittance;
   }
 };
 
-/// The target of finished pixels: the image's first pixel is pixel (x0, y0) of the frame.
+/// Target of finished pixels. The image's first pixel is pixel (x0, y0) of the frame.
 struct ImageWindow {
   scene::Image* image;
   int x0 = 0, y0 = 0;

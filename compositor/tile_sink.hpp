@@ -15,8 +15,8 @@ using sorting::LatticeEncoding;
 
 /// Receives a tile's ray segments and turns them into pixels of an image, or into fragments for another process.
 ///
-/// The tile renderer calls begin_tile(); for each rectangle start(), take() repeatedly, and finish(); then end_tile().
-/// Pixels are numbered row by row within the rectangle of start(). One sink is used by one thread.
+/// The tile renderer calls begin_tile(), then for each rectangle start(), take() repeatedly, and finish(), then
+/// end_tile(). Pixels are numbered row by row within the rectangle of start(). A sink is used by one thread only.
 template <class Encoding>
 class TileSink {
  public:
@@ -28,24 +28,25 @@ class TileSink {
   TileSink& operator=(const TileSink&) = delete;
   virtual ~TileSink() = default;
 
-  /// Called once per tile, around all other calls; the rectangles of start() are the tile or parts of it.
+  /// Called once per tile, before all other calls for this tile. The rectangles of start() are the tile or parts of the
+  /// tile.
   virtual void begin_tile(std::size_t /*tile*/, const scene::PixelRect& /*rect*/) {}
   virtual void end_tile() {}
 
-  /// Discards an unfinished rectangle and begins the pixels of `rect`; on the lattice, this is within one square of 32
-  /// x 32 pixels aligned to multiples of 32.
+  /// Discards an unfinished rectangle and begins the pixels of `rect`. On the lattice, `rect` is within one square of
+  /// 32 x 32 pixels that is aligned to multiples of 32.
   virtual void start(const scene::PixelRect& rect) = 0;
 
-  /// Takes, in each pixel's order, the final segments: those whose key (the front, or the back in lists ordered by it)
-  /// is less than `final_depth`, because no later segment may precede them. Removes them from the store, and those of
-  /// closed pixels. On the lattice, lists of less than `at_least` segments may stay for later. The time is added to the
-  /// stages `sort`, `integrate` and `composite` (fragments: `pack`).
+  /// Takes the final segments in each pixel's order, and removes them from the store. Final are segments whose key (the
+  /// front, or the back in lists ordered by the back) is less than `final_depth`, because no later segment may precede
+  /// them. Also removes the segments of closed pixels. On the lattice, lists with fewer than `at_least` segments may
+  /// stay for later. The time is added to the stages `sort`, `integrate` and `composite` (sinks of fragments: `pack`).
   virtual void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) = 0;
 
-  /// Takes all segments, though later ones may come between them, because there is no room for more; all segments
-  /// before `final_depth` are complete. Returns false, and takes nothing, if the sink needs segments in order: the
-  /// renderer then starts again on a part of the rectangle, and start() must undo everything that this rectangle has
-  /// contributed.
+  /// Takes all segments because the store cannot grow any further, although later segments may come between them; all
+  /// segments before `final_depth` are complete. If the sink needs segments in order, it returns false and takes no
+  /// segments. The renderer then starts again on a part of the rectangle, and start() must undo everything that this
+  /// rectangle has contributed.
   virtual bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) = 0;
 
   /// The pixels that still accept segments, and whether there are any. Segments of other pixels may be discarded.
@@ -55,7 +56,7 @@ class TileSink {
   /// Called when the rectangle's last segment has been taken, or all its pixels are closed.
   virtual void finish() = 0;
 
-  /// The number of segments taken so far, or left out behind opaque ones.
+  /// The number of segments taken so far, including those left out behind opaque segments.
   [[nodiscard]] virtual std::uint64_t segments() const = 0;
 };
 

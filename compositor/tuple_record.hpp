@@ -8,14 +8,14 @@
 
 namespace tessera::compositor {
 
-/// The paper's 4-tuple and its pixel.
+/// The paper's 4-tuple, with the pixel to which it belongs.
 struct TupleRecord {
   std::uint32_t pixel;
   projection::SegmentTuple tuple;
 };
 static_assert(sizeof(TupleRecord) == 20);
 
-/// The records that follow a LatticeHeader (exchange/wire.hpp), byte for byte.
+/// The wire format of these records, which follow a LatticeHeader (exchange/wire.hpp), is this structure byte for byte.
 static_assert(sizeof(projection::LatticeSegment) == 16);
 
 }  // namespace tessera::compositor

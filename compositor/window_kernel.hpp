@@ -18,7 +18,7 @@
 namespace tessera::compositor {
 
 /// The pixels of one square while windows of lattice segments are composited into them, numbered row by row in the
-/// rectangle: for each, the light of its current run of segments. For an image, this run is the whole ray.
+/// rectangle. The state of a pixel is the light of its current run of segments. In an image, this run is the whole ray.
 ///
 /// Sums are in double precision, segment after segment, so a pixel's bits do not depend on how its segments were
 /// divided into windows.
@@ -28,35 +28,35 @@ struct WindowState {
   static constexpr std::int32_t not_yet = 0x7fffffff;
 
   alignas(64) std::array<double, pixels> red, green, blue, transmittance;
-  alignas(64) std::array<float, pixels> length_per_step;  ///< world units, in the lattice's unit of depth
+  alignas(64) std::array<float, pixels> length_per_step;  ///< world units per step of the lattice's depth
   alignas(64) std::array<std::int32_t, pixels> open;      ///< -1: the pixel accepts segments; 0: it is closed
-  /// The run's first segment with optical depth or light; first_back is not_yet before there is one.
+  /// The run's first segment with optical depth or light. `first_back` is `not_yet` before there is such a segment.
   alignas(64) std::array<std::int32_t, pixels> first_front, first_back;
   alignas(64) std::array<float, pixels> first_scalar_front, first_scalar_back;
 
-  // Only for runs.
-  alignas(64) std::array<double, pixels> ray_transmittance;  ///< of the runs before this one
-  alignas(64) std::array<std::int32_t, pixels> back;         ///< the end of the run; not_yet: no run
-  alignas(64) std::array<std::int32_t, pixels> several;      ///< -1: more than one of its segments is visible
+  // The following are only used for runs.
+  alignas(64) std::array<double, pixels> ray_transmittance;  ///< transmittance of the ray's runs before this one
+  alignas(64) std::array<std::int32_t, pixels> back;         ///< end of the run; not_yet: there is no run
+  alignas(64) std::array<std::int32_t, pixels> several;      ///< -1: more than one segment of the run is visible
   /// A visible run that has ended.
   struct Run {
     std::uint32_t pixel;
     std::int32_t back;
-    bool several;                      ///< false: only `first` is visible
+    bool several;                      ///< false: only the segment `first` is visible
     projection::LatticeSegment first;  ///< the segment in which it becomes visible
     double red, green, blue, opacity;
   };
   std::vector<Run> ended;
 
-  /// By group of as many pixels as a vector has lanes: the number of rows that the last compositing left because they
-  /// were not final.
+  /// For each group of as many pixels as a vector has lanes: the number of rows that the last compositing left in the
+  /// windows because they were not final.
   std::array<std::int32_t, pixels / 4> rest_rows;
 
   // Working memory.
   sorting::WindowOrder order;
   std::vector<projection::LatticeSegment> rest;
   std::vector<projection::SegmentLight> rest_lights;
-  bool lit = false;  ///< the windows' segments have lights
+  bool lit = false;  ///< whether the windows contain the lights of segments
 
   /// Starts empty rays for the pixels of `rect`, all open.
   void start(const scene::PixelRect& rect, const projection::PixelSpace& space);
@@ -64,7 +64,7 @@ struct WindowState {
   [[nodiscard]] Run run(std::size_t pixel) const;
   /// Ends a pixel's run, and stores it if it is visible.
   void end_run(std::size_t pixel);
-  /// The open pixels of `rect`, in the rasterizer's format. Returns their number.
+  /// Writes the open pixels of `rect` to `open_rows` in the rasterizer's format. Returns their number.
   int open_pixels(const scene::PixelRect& rect, projection::OpenPixels& open_rows) const;
 };
 
@@ -75,24 +75,25 @@ double first_visible_depth(const scene::Lattice& lattice, const projection::Latt
 /// The parameters of compositing windows.
 struct WindowRules {
   const integrals::LaneTable* table;
-  double least_transmittance;                   ///< pixels with less are closed
+  double least_transmittance;                   ///< pixels with less transmittance are closed
   bool runs = false;                            ///< segments that do not touch begin a new run
   const scene::SurfaceSet* surfaces = nullptr;  ///< the surfaces whose crossings are among the segments; null: none
 };
 
-/// A run ends where the front of the next segment is further from its back than this. The depths of neighbours have the
-/// same bits, except where double precision was used for an edge-on cell: then they differ by a few steps of 2^-30 of
-/// half the mesh's depth.
+/// A run ends if the front of the next segment is further from the back of the run than this. The depths of neighbours
+/// have the same bits, except where double precision was used for an edge-on cell: then they differ by a few steps of
+/// 2^-30 of half the mesh's depth.
 constexpr std::int32_t touching_steps = 64;
 
 /// Sorts, integrates and composites, in each pixel's order, all segments of the windows whose front is before
-/// `final_step`, and removes them, one pixel per lane. A group of pixels waits while none of its lists has `at_least`
-/// segments, unless this is 1, or while all are shorter than twice the number of rows that were not final the last
-/// time, unless one is full. Returns the number of removed segments, including those left out behind opaque ones.
+/// `final_step`, and removes them, one pixel per lane. If `at_least` is not 1, a group of pixels is left for later in
+/// two cases: if none of its lists has `at_least` segments; and, unless one of its lists is full, if all are shorter
+/// than twice the number of rows that were not final the last time. Returns the number of removed segments, including
+/// those left out behind opaque segments.
 ///
-/// Order: front, back, then the scalars. Segments equal in all are interchangeable, so the pixels' bits do not depend
-/// on processes, partitions or threads. In a mesh whose cells do not overlap, only segments of length zero have equal
-/// depths.
+/// Order: front, back, then the scalars. Segments that are equal in all of these are interchangeable, so the bits of
+/// the pixels do not depend on processes, partitions or threads. In a mesh whose cells do not overlap, only segments of
+/// length zero have equal depths.
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
                                 std::size_t at_least, WindowState& state, scene::StageTimer& timer);
 

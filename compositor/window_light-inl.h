@@ -2,17 +2,17 @@
 // Composites the light of windows' rows into pixels or runs. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What      The sorted segments of sixteen pixels, one pixel per lane, row by row: row i contains the i-th segment of
-//           every pixel. LightRows integrates rows to light C and opacity alpha; GroupLight composites them front to
-//           back,
+// What      The input is the sorted segments of sixteen pixels, one pixel per lane, row by row: row i contains the
+//           i-th segment of every pixel. LightRows integrates rows to light C and opacity alpha; GroupLight composites
+//           them front to back,
 //             color += T C,  T -= T alpha,
 //           where T is the transmittance so far. A run is a sequence of segments that touch: for an image, it is the
 //           whole ray; for fragments, it ends where the next segment does not touch.
-// How       Segments of one piece are integrated in place; those that are cut into several wait until they fill the
-//           lanes. The light of a surface is composited in front of that of the segment behind it.
+// How       Segments that need only one piece are integrated in place; segments that are cut into several pieces wait
+//           until they fill the lanes. The light of a surface is composited in front of that of the segment behind it.
 // Bits      Sums are in double precision, segment after segment: they depend neither on windows nor on the other lanes.
-// Ends      A pixel whose T falls below the least visible transmittance is closed with this segment and accepts no
-//           more.
+// Ends      A pixel is closed after the segment with which its T falls below the least visible transmittance; it
+//           accepts no further segments.
 
 #if defined(TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
@@ -38,34 +38,36 @@ namespace HWY_NAMESPACE {
 using projection::HWY_NAMESPACE::SegmentLanes;
 constexpr std::int32_t no_key = WindowState::not_yet;  // greater than all keys
 
-/// -1 where the mask is set, else 0.
+/// Returns -1 in lanes where the mask is set, and 0 in others.
 HWY_INLINE VI lanes_of(DoubleMasks mask) { return ConvertTo(DI(), demote(IfThenElseZero(mask, doubles(-1)))); }
 
-/// The light that leaves the segments of a block of rows, each with one segment per pixel: values [row * lanes + lane].
+/// The light that leaves the segments of a block of rows. A row has one segment per pixel; its values are at [row *
+/// lanes + lane].
 struct LightRows {
   static constexpr std::size_t most = 32, numbers = most * most_lanes;
   alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
-  /// Of the segment, in lattice steps; front is no_key where the lane has no valid segment in the row.
+  /// Depths of the segment, in lattice steps; `front` is no_key where the lane has no valid segment in the row.
   alignas(64) std::int32_t front[numbers], back[numbers];
   alignas(64) std::int32_t interval[numbers];
   alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
   alignas(64) float own[numbers], white[numbers];  ///< of lit matter: SegmentLight
-  // The positions of segments of more than one piece, until they fill the lanes.
+  // The positions of segments that need more than one piece, until these segments fill the lanes.
   alignas(64) std::int32_t waiting_at[numbers + most_lanes];
   std::size_t waiting = 0;
   bool lit[most];  ///< whether some lane of the row has light or optical depth
-  // Runs: where each lane's run ends after the rows (no_key: the lane is in none), and whether none ends between them.
+  // For runs: where the run of each lane ends after the rows (no_key: the lane is not in a run), and whether no run
+  // ends between the rows.
   alignas(64) std::int32_t run_back[most_lanes];
   bool touching;
-  // Segments that begin at a surface: their positions, and their marks during integration; and the rows that have some,
-  // one bit each.
+  // Segments that begin at a surface: their positions, their marks during integration, and the rows that have such
+  // segments, one bit per row.
   alignas(64) std::int32_t marked_at[numbers + most_lanes];
   alignas(64) float mark[numbers + most_lanes];
   std::size_t marked = 0;
   std::uint32_t marked_rows = 0;
 
-  /// Stores the marks of a row, whose segments are taken in lanes that are final and open. Returns its front scalars,
-  /// with marks replaced by the surfaces' values.
+  /// Stores the marks of a row, for those lanes whose segment is final and whose pixel is open. Returns the row's front
+  /// scalars, with marks replaced by the surfaces' values.
   HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, MI is_final, MI open, VF scalar_from,
                                    std::size_t row) {
     using Mark = projection::LatticeMark;
@@ -85,8 +87,8 @@ struct LightRows {
     const VI number = IfThenElseZero(RebindMask(di, is_mark), Min(number_of(scalar_from), last));
     return IfThenElse(is_mark, GatherIndex(d, by_number.data(), number), scalar_from);
   }
-  /// After integrate(): composites the surfaces in front of what is behind them. `show_first`: whether the first
-  /// visible segment of some lane may still be needed.
+  /// Must be called after integrate(). Composites the light of surfaces in front of the light behind them.
+  /// `show_first`: whether the first visible segment of some lane may still be needed.
   HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
     const DF d;
     const DI di;
@@ -152,7 +154,7 @@ struct LightRows {
     waiting = 0;
   }
 
-  /// Lights the matter of the first `count` rows, once integrated.
+  /// Applies lighting to the matter of the first `count` rows, after integration.
   HWY_NOINLINE void light_matter(std::size_t count) {
     const DF d;
     for (std::size_t row = 0; row < count; ++row) {
@@ -205,7 +207,7 @@ struct RayLight {
     store(red, &state.red[p]), store(green, &state.green[p]), store(blue, &state.blue[p]);
     store(transmittance, &state.transmittance[p]);
   }
-  /// Adds the light that begins at `at`. `weight`: the transmittance, or zero in lanes that accept nothing.
+  /// Adds the light at position `at`. `weight` is the transmittance, or zero in lanes that accept nothing.
   HWY_INLINE void add(const LightRows& light, std::size_t at, Doubles weight) {
     red = MulAdd(weight, load(light.red + at), red);
     green = MulAdd(weight, load(light.green + at), green);
@@ -223,14 +225,14 @@ class GroupLight {
   /// Adds the first `count` rows. Returns whether some pixel stays open.
   HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
     if (!rules.runs) return add_touching<false>(count, rules);
-    // In most cases, no run ends between the rows: then they are added as for an image. Independent emission also ends
-    // runs.
+    // In most cases, no run ends between the rows. The rows are then added in the same way as for an image. Independent
+    // emission also ends runs.
     if (light_.touching && !independent_) return add_touching<true>(count, rules);
     return rules.least_transmittance > 0 ? add_to_runs<true>(count, rules) : add_to_runs<false>(count, rules);
   }
 
  private:
-  /// Adds rows that continue what each pixel has: the whole ray, or its run.
+  /// Adds rows that continue what each pixel has: its whole ray, or its current run.
   template <bool runs>
   HWY_INLINE bool add_touching(std::size_t count, const WindowRules& rules) {
     RayLight ray(state_, pixel_);
@@ -240,7 +242,8 @@ class GroupLight {
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
       ray.add(light_, row * hn::Lanes(DF()), IfThenElseZero(open, ray.transmittance));
-      // After each segment, not each window: where a ray ends must not depend on how its segments were divided.
+      // This is decided after each segment, not after each window: where a ray ends must not depend on how its segments
+      // were divided into windows.
       open = And(open, ray.transmittance >= least);
     }
     ray.save(state_, pixel_);
@@ -250,8 +253,8 @@ class GroupLight {
     return !AllFalse(DI(), open_lanes < Zero(DI()));
   }
 
-  /// Stores where lanes that were not visible become visible and, for runs, whether more than this segment is visible.
-  /// (Segments in lanes that a row has closed count, too.)
+  /// Stores the segment in which lanes that were not visible become visible and, for runs, whether more than this
+  /// segment is visible. (Segments count even in lanes that an earlier segment of the row has closed.)
   template <bool runs>
   HWY_INLINE void note_first(std::size_t count) {
     const DI d;
@@ -273,7 +276,7 @@ class GroupLight {
     if constexpr (runs) Store(VecFromMask(d, Not(single)), d, &state_.several[pixel_]);
   }
 
-  /// The least transmittance with which the lanes' runs stay open, given the runs in front of them.
+  /// The transmittance below which the lanes' runs are closed; it depends on the runs in front of them.
   HWY_INLINE Doubles least_of_runs(const WindowRules& rules) const {
     if (rules.least_transmittance == 0) return doubles(0);
     return doubles(rules.least_transmittance) / load(&state_.ray_transmittance[pixel_]);
@@ -283,8 +286,8 @@ class GroupLight {
   struct Runs {
     RayLight light;
     Doubles least;     ///< transmittance below which lanes are closed
-    VI back;           ///< the end of the run; no_run: the lane is in none
-    MI seen, several;  ///< whether one segment of it is visible, and more than one
+    VI back;           ///< end of the run; no_run: the lane is not in a run
+    MI seen, several;  ///< whether at least one segment of the run is visible, and whether more than one is
   };
   static constexpr std::int32_t no_run = -no_key;
 
@@ -303,7 +306,7 @@ class GroupLight {
     Store(VecFromMask(d, runs.several), d, &state_.several[pixel_]);
   }
 
-  /// Adds rows to runs. Returns whether some pixel stays open; this can change only with `closes`.
+  /// Adds rows to runs. Returns whether some pixel stays open; with `closes` false, no pixel is closed.
   template <bool closes>
   HWY_INLINE bool add_to_runs(std::size_t count, const WindowRules& rules) {
     const DI d;
@@ -322,12 +325,12 @@ class GroupLight {
         end_runs(ends);
         runs = resume<closes>(rules);
       }
-      // All lanes that take a segment are now in a run up to its back. The depths of irregular cells differ by a few
-      // steps: the end of a run never decreases.
+      // All lanes that take a segment are now in a run that extends to the back of this segment. The depths of
+      // irregular cells differ by a few steps, so the end of a run must never decrease.
       runs.back = IfThenElse(takes, Max(runs.back, Load(d, light_.back + at)), runs.back);
       if (!light_.lit[row]) continue;
       note_shown(runs, takes, absorbs, row);
-      // Lanes that took nothing from the start have no light; lanes that were closed since then have.
+      // Lanes that took no segment from the beginning have no light; lanes that were closed since then do.
       Doubles weight = runs.light.transmittance;
       if constexpr (closes) weight = IfThenElseZero(open, weight);
       runs.light.add(light_, at, weight);
@@ -343,25 +346,25 @@ class GroupLight {
     return !AllFalse(d, open_lanes);
   }
 
-  /// The lanes whose run ends because the segment that they take does not touch its back.
+  /// Returns the lanes whose run ends because the segment that they take does not touch the back of the run.
   HWY_INLINE MI ending(const Runs& runs, VI front, MI takes, MI absorbs) const {
     const DI d;
     const MI in_run = And(takes, runs.back != Set(d, no_run));
     const MI apart = And(in_run, Abs(front - runs.back) > Set(d, touching_steps));
     if (!independent_) return apart;
-    // Light without extinction does not share a run with absorption behind it, either: a run's front is where
-    // absorption begins.
+    // Light without extinction does not share a run with absorption behind it, either, because the front of a run is
+    // where absorption begins.
     const MI clear = lanes_of(runs.light.transmittance >= doubles(1)) != Zero(d);
     return Or(apart, And(And(in_run, absorbs), And(runs.seen, clear)));
   }
 
-  /// Stores which of the row's segments are visible in the lanes' runs.
+  /// Records which of the row's segments are visible in the lanes' runs.
   HWY_INLINE void note_shown(Runs& runs, MI takes, MI absorbs, std::size_t row) {
     const DI d;
     const DF df;
     MI shows = absorbs;
     if (independent_) {
-      // A run begins where it becomes visible, also if only by light.
+      // A run begins where it becomes visible, even if it only emits light there.
       const std::size_t at = row * hn::Lanes(d);
       const auto color = [&](const float* c) HWY_ATTR { return Abs(Load(df, c + at)); };
       const VF colors = color(light_.red) + (color(light_.green) + color(light_.blue));

@@ -14,7 +14,8 @@ namespace tessera::compositor {
 class DeepTarget {
  public:
   virtual ~DeepTarget() = default;
-  /// Adds the samples of a rectangle, pixel by pixel in rows, `counts` of them in each. Rectangles are disjoint.
+  /// Adds the samples of a rectangle, pixel by pixel in rows; `counts` has the number of samples of each pixel.
+  /// Rectangles must be disjoint.
   virtual void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
                    std::vector<scene::DeepImageSample> samples) = 0;
 };
@@ -22,17 +23,18 @@ class DeepTarget {
 /// Collects the deep samples of an image, with rectangles in any order and from any thread.
 class DeepCollector final : public DeepTarget {
  public:
-  /// `most_bytes` bounds the memory of the samples, including the copy that image() makes.
+  /// `most_bytes` is an upper bound of the memory of the samples, including the copy that image() makes.
   DeepCollector(scene::ImageSize size, std::uint64_t most_bytes) : size_(size), most_bytes_(most_bytes) {}
 
-  /// Throws Error(system_failure) beyond the bound.
+  /// Throws Error(system_failure) if the samples exceed `most_bytes`.
   void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
            std::vector<scene::DeepImageSample> samples) override;
 
-  /// Returns the image and empties the collector. Pixels for which none were added have no samples.
+  /// Returns the image and empties the collector. Pixels for which no samples were added have none.
   scene::DeepImage image();
 
-  static constexpr std::uint64_t bytes_a_pixel = 2 * sizeof(std::uint64_t);  ///< used independently of the samples
+  static constexpr std::uint64_t bytes_a_pixel =
+      2 * sizeof(std::uint64_t);  ///< memory per pixel that is needed in addition to the samples
 
  private:
   struct Block {

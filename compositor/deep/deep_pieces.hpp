@@ -9,16 +9,16 @@
 
 namespace tessera::compositor {
 
-/// A part of a ray segment. Planar depths; the scalar is linear in between.
+/// A part of a ray segment. Depths are planar; the scalar is linear between front and back.
 struct DeepPiece {
   double front, back, scalar_front, scalar_back;
-  double optical_depth = 0;  ///< of a piece from PieceCutter: exact, for any opacity
+  double optical_depth = 0;  ///< set by PieceCutter: exact for any opacity
 };
 
-/// The largest optical depth t of a sample behind `transmittance` whose alpha may be stored as a float. If alpha is
-/// rounded by e, cutting at x gives a transmittance with an error of x exp(t (1 - x)) e, at most exp(t - 1) e / t.
-/// This, and the light that belongs to it (`ratio` bounds light over alpha), may use a sixteenth of the accuracy. An
-/// alpha that was rounded to 1 would be opaque however thinly it is cut. At least 1.
+/// Returns the largest optical depth t of a sample behind `transmittance` whose alpha may be stored as a float. If
+/// alpha is rounded by e, cutting at x gives a transmittance with an error of x exp(t (1 - x)) e, at most exp(t - 1) e
+/// / t. This error and the resulting error of light (`ratio` is an upper bound of light over alpha) may use a sixteenth
+/// of the accuracy. The result is at least 1. An alpha that was rounded to 1 would be opaque however thinly it is cut.
 double most_optical_depth(double accuracy, double transmittance, double ratio);
 
 /// Cuts ray segments into pieces so short that each may be cut anywhere as if its matter had constant density.
@@ -31,23 +31,24 @@ double most_optical_depth(double accuracy, double transmittance, double ratio);
 /// everything before the piece. Pieces keep this below accuracy / 2; merging them (deep_fragments.hpp) may use a
 /// quarter, and the rounding of alpha to float a sixteenth.
 ///
-/// Between knots of the transfer function, extinction and colour are linear in z. In a piece of world length l, over
-/// which the extinction changes by dk and the colour by dc (the largest of its channels), with colours up to c:
-/// - the optical depth is a parabola, off its chord by d = dk l / 8 at most, and |T' - T| <= d;
-/// - absorption: L as a function of alpha has slopes (the colour) that differ by dc at most, so it is off its chord by
-///   dc a / 4, and |L' - L| <= dc a / 4 + c d, where a is at most the optical depth;
+/// Between knots of the transfer function, extinction and colour are linear in z. In a piece of world length l, let the
+/// extinction change by dk and the colour by dc (the largest change of a channel), with colours up to c:
+/// - the optical depth is a parabola, which differs from its chord by d = dk l / 8 at most, and |T' - T| <= d;
+/// - absorption: L as a function of alpha has slopes (the colour) that differ by dc at most, so it differs from its
+///   chord by dc a / 4, and |L' - L| <= dc a / 4 + c d, where a is at most the optical depth;
 /// - independent emission: dL = c T dt, and with the share of the light before z instead of alpha,
 ///   |L' - L| <= l (dc + 2 c d) / 4 for d <= 1.
 /// All of these decrease with the square of the piece's length or faster, which determines the length directly. Pieces
-/// behind a transmittance that hides any error are not cut. The transmittance here is that of this pixel's own
-/// segments; segments of other processes in front of them only reduce it.
+/// behind a transmittance that hides any error are not cut. This transmittance is computed from the segments that this
+/// process has of the pixel; segments of other processes in front of them can only reduce it.
 class PieceCutter {
  public:
   PieceCutter(const scene::TransferFunction& function, scene::Emission emission, double accuracy);
 
-  /// Appends the pieces of one segment that contain light or optical depth, front to back. They touch, with the same
-  /// bits, except where the transfer function is zero. `length_per_depth` is the pixel's. `transmittance` is that
-  /// before the segment, and after the call that behind it.
+  /// Appends the pieces of one segment that contain light or optical depth, front to back. They touch with the same
+  /// bits, except where the transfer function is zero. `length_per_depth` is the world length per planar depth of the
+  /// pixel's ray. `transmittance` is the transmittance before the segment; the call changes it to the transmittance
+  /// behind the segment.
   void cut(const DeepPiece& segment, double length_per_depth, double& transmittance,
            std::vector<DeepPiece>& pieces) const;
 
@@ -56,7 +57,8 @@ class PieceCutter {
     double extinction;
     std::array<double, 3> color;
   };
-  /// The function at `s`, continued linearly from the interval after knot `interval` (0: below the first).
+  /// The function's value at `s`, by linear continuation from the interval after knot `interval` (0: the interval below
+  /// the first knot).
   [[nodiscard]] Optics optics(std::size_t interval, double s) const;
   void cut_linear(const DeepPiece& stretch, const Optics& a, const Optics& b, double length_per_depth,
                   double& transmittance, std::vector<DeepPiece>& pieces) const;

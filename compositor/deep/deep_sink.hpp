@@ -14,12 +14,13 @@
 
 namespace tessera::compositor {
 
-/// An image and, in addition, deep samples: cuts a tile's ray segments into pieces, integrates these, and merges them.
-/// The integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels are closed in the
-/// same way as an image's, by their own sums; a pixel is open as long as either is.
+/// Computes an image and, in addition, deep samples: cuts a tile's ray segments into pieces, integrates the pieces, and
+/// merges them. The integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels are
+/// closed by the same rule as those of the image, but by their own sums; a pixel is open as long as either of the two
+/// is.
 class DeepSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The scene's values, the window's image and `collector` must outlive this object; threads share `collector`.
+  /// The values of `scene`, the window's image and `collector` must outlive this object. Threads share `collector`.
   DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, double accuracy, DeepTarget& collector);
 
@@ -31,7 +32,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
-  /// Working memory per pixel of the tile.
+  /// Working memory per pixel of the tile, in bytes.
   static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
 
  private:
@@ -45,26 +46,26 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   double accuracy_;
   DeepTarget* collector_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
   std::vector<DeepMerger> mergers_;                 ///< one per pixel
   std::vector<double> transmittance_before_, length_per_depth_;
   std::vector<std::uint8_t> open_, deep_open_;
   std::size_t deep_open_count_ = 0;
-  std::vector<DeepPiece> pieces_;  ///< waiting for the integrator
+  std::vector<DeepPiece> pieces_;  ///< pieces that wait to be integrated
   std::vector<std::uint32_t> piece_pixels_;
-  std::vector<std::uint32_t> piece_tets_;   ///< with light on the matter
-  std::vector<CrossingInBatch> crossings_;  ///< among the pieces
+  std::vector<std::uint32_t> piece_tets_;   ///< the tet of each piece; only if matter is lit
+  std::vector<CrossingInBatch> crossings_;  ///< crossings of surfaces in the list of pieces
   integrals::SegmentBatch batch_;
   struct PixelSample {
     std::uint32_t pixel;
     DeepSample sample;
   };
   std::vector<DeepSample> ended_;
-  std::vector<PixelSample> samples_;  ///< in each pixel's order
+  std::vector<PixelSample> samples_;  ///< samples of all pixels; those of one pixel are in order
 };
 
-/// Appends the samples of one pixel, in order, as floats: depths are rounded, which keeps their order; samples that
-/// become points at the same depth by rounding are combined; samples without alpha and light are left out.
+/// Appends the samples of one pixel, in order, as floats. Rounding depths keeps their order. Samples that become points
+/// at the same depth by rounding are combined. Samples without alpha and light are left out.
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

@@ -12,13 +12,13 @@
 
 namespace tessera::compositor {
 
-/// An image and, in addition, its layers (integrals/ray_layers.hpp), one deep sample each: the first sample of a pixel
-/// is its first layer, and so on to the end of the ray. The samples are those of append_layers().
+/// Computes an image and, in addition, its layers (integrals/ray_layers.hpp), which are stored as deep samples: the
+/// first sample of a pixel is its first layer, and so on to the end of the ray. append_layers() makes the samples.
 ///
 /// A pixel stays open behind opaque matter until its last layer is opaque, too.
 class PeelSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The scene's values, the window's image and `target` must outlive this object; threads share `target`.
+  /// The values of `scene`, the window's image and `target` must outlive this object. Threads share `target`.
   PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, const Peel& peel, DeepTarget& target);
 
@@ -31,7 +31,7 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
  private:
-  /// A segment, or a crossing, that waits for the integrator.
+  /// A segment, or a crossing of a surface, that waits to be integrated.
   struct Waiting {
     std::uint32_t pixel, tet;
     double front, back, scalar_front, scalar_back;
@@ -51,19 +51,19 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   integrals::RayLayers layers_;
   DeepTarget* target_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
   std::vector<integrals::OpenLayer> rays_;          ///< one per pixel
   std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_, layers_open_;
   std::size_t layers_open_count_ = 0;
-  std::vector<Waiting> waiting_;  ///< each pixel's in order
+  std::vector<Waiting> waiting_;  ///< segments of all pixels; those of one pixel are in order
   integrals::SegmentBatch batch_;
   std::vector<integrals::RayLayer> ended_;
-  std::vector<PixelLayer> made_;  ///< in each pixel's order
+  std::vector<PixelLayer> made_;  ///< layers of all pixels; those of one pixel are in order
 };
 
-/// Appends the layers of one pixel as deep samples, with rounded depths. Two of them may be points at the same depth,
-/// which other deep images do not contain.
+/// Appends the layers of one pixel as deep samples with rounded depths. In contrast to other deep images, two samples
+/// may be points at the same depth.
 void append_layers(std::span<const integrals::RayLayer> layers, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

@@ -9,8 +9,8 @@
 
 namespace tessera::compositor {
 
-/// The lights that a device would compute, computed on the CPU in double precision: for compositors whose device has
-/// failed. `units`: those of the fragments' depths and scalars.
+/// Computes on the CPU, in double precision, the lights that a device would compute; for compositors whose device has
+/// failed. `units` are the units of the fragments' depths and scalars.
 std::vector<GlLight> composite_on_cpu(const GlFragments& fragments, const GlRules& rules,
                                       const integrals::SegmentIntegrator& integrator, const scene::Lattice& units);
 

@@ -11,7 +11,7 @@
 #include "gl/buffer.hpp"
 #include "gl/shader.hpp"
 
-/// The compositing methods of a device, used only by GlCompositor.
+/// The interface of a device's compositing methods, used only by GlCompositor.
 namespace tessera::compositor {
 
 struct GlJob {
@@ -28,17 +28,18 @@ struct GlCount {
   std::promise<std::vector<std::uint32_t>> done;
 };
 
-/// Used on the context's thread. Batches are begun and finished in order, at most `in_flight()` at once.
+/// A compositing method. May only be used on the context's thread. Batches begin and finish in the same order, with at
+/// most `in_flight()` batches at once.
 class GlKernel {
  public:
   virtual ~GlKernel() = default;
-  /// Queues the batch's commands; its jobs, all of one frame, exist until finish().
+  /// Queues the commands of a batch. All jobs of a batch belong to one frame, and must exist until finish().
   virtual void begin(std::span<GlJob> jobs) = 0;
   /// Waits for the oldest batch and returns its lights, job by job, list by list.
   virtual std::vector<std::vector<GlLight>> finish() = 0;
   [[nodiscard]] virtual int in_flight() const = 0;
-  /// The number of segments in every pixel, row by row. Waits for the device, including batches that were begun. Only
-  /// `compute` supports cells.
+  /// Returns the number of segments in every pixel, row by row. Waits for the device, including the batches that have
+  /// begun. Only `compute` supports cells.
   virtual std::vector<std::uint32_t> count(const GlCount& /*job*/) { return {}; }
 };
 
