@@ -8,25 +8,25 @@
 
 namespace tessera::projection {
 
-/// The scalars at which a transfer function is invisible, as closed intervals between two doubles, so that a cell's
-/// visibility takes a few comparisons: a cell is invisible if one interval contains all of its scalars.
+/// The scalars at which a transfer function is invisible, as closed intervals between two doubles. A cell is invisible
+/// if one interval contains all of its scalars, which takes only a few comparisons.
 ///
-/// Agrees with TransferFunction::visible to the last bit: an interval ends where the interpolation, with its rounding,
-/// becomes zero, and intervals are not joined across a step that is visible only from below.
+/// The intervals agree with TransferFunction::visible to the last bit: an interval ends where the interpolation, with
+/// its rounding, becomes zero, and intervals are not joined across a step that is visible only from below.
 class ClearIntervals {
  public:
   struct Interval {
     double low, high;  ///< both inclusive; may be infinite
   };
 
-  /// No intervals: everything is visible.
+  /// Makes no intervals: everything is visible.
   ClearIntervals() = default;
-  /// `boundaries`: ascending. No interval contains both a boundary and values below it, so that cells in which the
+  /// `boundaries` must ascend. No interval contains both a boundary and values below it, so that cells in which the
   /// field crosses a boundary are visible.
   ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction,
                  std::span<const double> boundaries = {});
 
-  /// The intervals that intersect [low, high], ascending.
+  /// Returns the intervals that intersect [low, high], ascending.
   [[nodiscard]] std::span<const Interval> meeting(double low, double high) const;
 
   /// Whether nothing in [low, high] is visible.

@@ -6,24 +6,29 @@
 
 namespace tessera::projection {
 
-/// Selects the cells whose depths the lattice rasterizer would round visibly; these are rasterized in double precision,
-/// which rounds to the nearest step. The effect of a depth error is proportional to `light_per_step`, extinction times
-/// length. A wide perspective, whose rays travel far per unit of depth, multiplies it.
+/// Selects the cells whose depths the lattice rasterizer would round visibly. These cells are rasterized in double
+/// precision, whose depths are rounded to the nearest step. The effect of a depth error is proportional to
+/// `light_per_step` (extinction times length). A wide perspective, whose rays travel far per unit of depth, increases
+/// it.
 ///
-/// Planes have an error of some steps; under perspective, a quotient of floats has an additional error, relative to the
-/// depth extent of the cell, though a ray's path through a thin cell may be a hundred-thousandth of this extent.
-///   - One crossing may have an error of most_error, for any cell.
-///   - Successive crossings of a ray have random errors. A ray sees about as many cells of a kind as have one optical
-///     depth together: (error)^2 per optical depth of a cell may be most_error_squared.
-///   - Errors below least_error are harmless, even a thousand of them.
+/// The planes of faces have an error of some steps. Under perspective, a quotient of floats has an additional error. It
+/// is relative to the depth extent of the cell, although a ray's path through a thin cell may be a hundred-thousandth
+/// of this extent.
+///   - A single crossing of a ray and a face may have an error of most_error, in any cell.
+///   - The errors of successive crossings of a ray are random. A ray passes about as many cells of a kind as have an
+///     optical depth of one together. So a cell's error^2 may be most_error_squared times the optical depth of the
+///     cell.
+///   - Errors below least_error are harmless, even if there are a thousand of them.
 struct DepthLimits {
-  // In units of a pixel's value.
+  // The unit of these errors is that of a pixel's value.
   static constexpr double most_error = 2.5e-6, most_error_squared = 1e-11, least_error = 5e-7;
-  // Of planes in steps; of quotients relative to the cell's extent. The usual errors are about two standard deviations.
+  // Errors of planes are in steps; errors of quotients are relative to the cell's extent. The usual errors are about
+  // two standard deviations.
   static constexpr double usual_plane_error = 6, usual_quotient_error = 0x1p-23, most_quotient_error = 0x1p-22;
 
-  double light_per_step = 0;                                      ///< largest change of a pixel per step of depth
-  double least_extent = std::numeric_limits<double>::infinity();  ///< cells no deeper than this, in steps, are accurate
+  double light_per_step = 0;  ///< largest change of a pixel per step of depth
+  double least_extent =
+      std::numeric_limits<double>::infinity();  ///< cells with at most this extent in depth, in steps, are accurate
 
   DepthLimits() = default;
   DepthLimits(double light, bool perspective) : light_per_step(light) {

@@ -9,9 +9,10 @@
 
 namespace tessera::projection {
 
-/// The pixels inside `window` whose centres a cell may cover: its bounding box in the image, never too few. Empty if
-/// there are none. A cell that crosses the eye plane or is behind it (some w <= 0) has no bounding box: it gets the
-/// whole window, or nothing if a plane through the eye and a side of the window separates it from the window.
+/// Returns the pixels inside `window` whose centres a cell may cover: the cell's bounding box in the image, which is
+/// never too small. Empty if there are no such pixels. A cell that crosses the eye plane or is behind it (some w <= 0)
+/// has no bounding box. The result is then the whole window, or empty if a plane through the eye and a side of the
+/// window separates the cell from the window.
 scene::PixelRect footprint(const std::array<PixelVertex, 4>& corners, const scene::PixelRect& window);
 
 }  // namespace tessera::projection

@@ -14,15 +14,17 @@
 
 namespace tessera::projection {
 
-/// An array for large data that are written before they are read: not set to zero, kept from frame to frame, and on
-/// huge pages where the system provides them on advice, if it is at least half a huge page. (Page faults of 4 KiB cost
-/// as much as filling the array, and a processor's TLB has about a hundred entries, sixteen for stores.)
+/// An array for large data that are written before they are read. It is not set to zero, and is kept from frame to
+/// frame. If it is at least half a huge page, it is on huge pages, where the system provides them on advice. (Page
+/// faults of 4 KiB cost as much as filling the array, and a processor's TLB has about a hundred entries, sixteen for
+/// stores.)
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
-  /// Room for `size` uninitialized elements; the old ones are lost. Memory of more than twice the size is freed.
+  /// Provides `size` uninitialized elements; the old elements are lost. If the array has memory for more than twice
+  /// `size`, that memory is freed.
   void reset(std::size_t size) {
     size_ = size;
     if (size <= capacity_ && size >= capacity_ / 2) return;

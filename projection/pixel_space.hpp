@@ -12,15 +12,16 @@
 
 namespace tessera::projection {
 
-/// A projected vertex. Behind the eye, w < 0, so cells that cross the eye plane need no clipping before rasterization.
-/// line_of_sight() determines on which side of a vertex a ray passes.
+/// A projected vertex. Behind the eye, w is negative, so cells that cross the eye plane need no clipping before
+/// rasterization. line_of_sight() determines on which side of a vertex a ray passes.
 using PixelVertex = scene::PixelPlace;
 
 /// The linear map from world to homogeneous pixel coordinates (scene/pixel_view.hpp), and the visible range.
 ///
-/// Orthographic pixel positions are rounded to multiples of 2^-32 pixel: so a vertex that is meant to be on a pixel
-/// centre is exactly there, in spite of the decimal noise of camera and mesh, and the tie rule then decides in the same
-/// way along a whole edge. The shift is far below what is visible in an image (docs/ACCURACY.md).
+/// Orthographic pixel positions are rounded to multiples of 2^-32 pixel. So a vertex that is meant to be on a pixel
+/// centre is exactly there, in spite of the rounding errors in the decimal coordinates of camera and mesh, and the tie
+/// rule then decides in the same way along a whole edge. The shift is far below what is visible in an image
+/// (docs/ACCURACY.md).
 class PixelSpace {
  public:
   /// Throws Error(bad_input) if camera or size is invalid.
@@ -28,11 +29,11 @@ class PixelSpace {
 
   [[nodiscard]] PixelVertex project(const glm::dvec3& p_world) const;
 
-  /// The same for many points, on SIMD lanes, with the same bits: out[i] is project(p_world[i]). The spans have equal
+  /// Projects many points on SIMD lanes, with the same bits: out[i] is project(p_world[i]). The spans must have equal
   /// lengths.
   void project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const;
 
-  /// Same as in scene::PixelView.
+  /// World length of the ray through this pixel position per unit of planar depth, as in scene::PixelView.
   [[nodiscard]] double length_per_depth(double x, double y) const { return view_.length_per_depth(x, y); }
 
   /// Direction of the ray through a pixel position, in world space, of any length.

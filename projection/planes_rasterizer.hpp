@@ -20,14 +20,15 @@ struct TileEntry {
   std::uint32_t tet;
 };
 
-/// The frame data that the rasterizer reads. `vertices[v]` is the mesh's vertex v.
+/// What a rasterizer needs to know about a frame. `vertices[v]` is the mesh's vertex v.
 struct ProjectedMesh {
   const PreparedMesh* mesh;
   std::span<const PixelVertex> vertices;
   double near_depth, far_depth;  ///< the clipping range in planar depth
   double pixels_per_tangent;     ///< as in PixelSpace
-  double scalar_origin = 0;      ///< segments' scalars are relative to this
-  /// For AttributeSegments: the attribute, by vertex. Linear in each cell, for both point and cell scalars.
+  double scalar_origin = 0;      ///< the scalars of segments are relative to this value
+  /// For AttributeSegments: the attribute, one value per vertex. It is linear in each cell, for both point and cell
+  /// scalars.
   std::span<const double> attribute{};
   /// The frame's iso-surfaces, for SplitRasterizer and rasterize_lattice(); null: none.
   const IsoView* iso = nullptr;
@@ -36,33 +37,34 @@ struct ProjectedMesh {
 /// Statistics of rasterization.
 struct RasterCounts {
   std::uint64_t exact_sign_tests = 0;  ///< planes: edge signs decided by exact arithmetic
-  std::uint64_t unpaired = 0;          ///< scanline: front-face fragments lost because they had no back-face fragment
+  std::uint64_t unpaired =
+      0;  ///< scanline: front-face fragments that were lost because the pixel had no back-face fragment
 };
 
-/// The `planes` rasterizer: cells to ray segments, for the pixels of one rectangle.
+/// The `planes` rasterizer: rasterizes cells to ray segments for the pixels of one rectangle.
 ///
 /// A ray enters a cell through one face and leaves it through another. The signs of the six edge functions
 ///   E_ab = | (px, py, 1) ; a ; b |
-/// determine which: a face (a, b, c) is pierced if E_ab, E_bc and E_ca have the same sign, and depth and scalar there
-/// are means of the corners' with weights |E_bc|, |E_ca|, |E_ab|. So set-up needs no divisions, values never leave the
-/// face's range, an edge-on face is simply never pierced, and cells that cross the eye plane are not special (the
-/// weights are 3D barycentric coordinates in homogeneous space).
+/// determine these faces: a face (a, b, c) is pierced if E_ab, E_bc and E_ca have the same sign. Depth and scalar at
+/// the point are means of the corners' values, with weights |E_bc|, |E_ca|, |E_ab|. So set-up needs no divisions,
+/// values never leave the face's range, an edge-on face is simply never pierced, and cells that cross the eye plane
+/// need no special treatment (the weights are 3D barycentric coordinates in homogeneous space).
 ///
 /// Watertight: vertices are in canonical order (PreparedMesh), so cells that share an edge or a face compute the same
-/// bits. Signs are those of exact arithmetic on rounded lines of sight with the tie rule (edge_sign.hpp): a double
-/// evaluation decides unless it is within its error bound. Along any ray, the segments of a mesh cover the ray's path
-/// through it without gaps and overlaps.
+/// bits. Signs are those of exact arithmetic on rounded lines of sight with the tie rule (edge_sign.hpp); a double
+/// evaluation is used unless its result is within its error bound. Along any ray, the segments of a mesh cover the
+/// ray's path through the mesh without gaps and overlaps.
 ///
-/// Lanes contain candidate pixels of the cell's box, packed row by row, so that small boxes fill the lanes.
+/// The lanes of a vector are candidate pixels of the cell's box, packed row by row, so that small boxes fill the lanes.
 ///
-/// Processes cells from the front of `entries` while `out` has room for a whole rectangle more, appends to `out`, and
-/// returns the number of processed cells (all, if there is room; at least one if out.capacity() - out.size >=
-/// rect.area()). Bits do not depend on the rectangle. Signs, not depths, select the faces: a maximum over the planes'
-/// depths would need a tie rule at every edge.
+/// Processes cells from the beginning of `entries` while `out` has room for a whole rectangle more, and appends to
+/// `out`. Returns the number of processed cells (all if there is room; at least one if out.capacity() - out.size >=
+/// rect.area()). Bits do not depend on the rectangle. Signs, not depths, select the faces, because a maximum over the
+/// depths of planes would need a tie rule at every edge.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts);
 
-/// The same, with projected.attribute at both ends of each segment.
+/// Does the same, and stores projected.attribute at both ends of each segment.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts);
 

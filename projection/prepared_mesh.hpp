@@ -10,16 +10,16 @@
 
 namespace tessera::projection {
 
-/// Puts every tet's corners in canonical order, the lexicographic order of their positions (x, then y, then z). A face
-/// shared by two cells is then computed from the same three points in the same order, to the same bits, whatever
-/// indices and orientation its cells use. This includes coincident vertices at a seam.
+/// Sorts the corners of every tet into canonical order, the lexicographic order of their positions (x, then y, then z).
+/// A face that two cells share is then computed from the same three points in the same order, with the same bits,
+/// whatever indices and orientation its cells use. This includes coincident vertices at a seam.
 void order_corners(scene::TetMesh& mesh);
 
 /// A mesh with the data that projection needs and that do not depend on the view.
 class PreparedMesh {
  public:
-  /// The mesh must outlive this object. If order_corners() has not been called for it, its tets are copied, which takes
-  /// 16 bytes each. Throws Error(bad_input) for more than 2^32 - 1 tets: split such a mesh over processes.
+  /// The mesh must outlive this object. If order_corners() has not been called for the mesh, its tets are copied, which
+  /// takes 16 bytes per tet. Throws Error(bad_input) for more than 2^32 - 1 tets: split such a mesh over processes.
   explicit PreparedMesh(const scene::TetMeshView& mesh);
   PreparedMesh(PreparedMesh&&) = default;
   PreparedMesh& operator=(PreparedMesh&&) = default;
@@ -43,7 +43,7 @@ class PreparedMesh {
 
  private:
   scene::TetMeshView mesh_;
-  std::vector<scene::Tet> ordered_;  ///< a copy, if the mesh's own are in another order
+  std::vector<scene::Tet> ordered_;  ///< a copy of the tets if the mesh's own tets are in another order
   std::span<const scene::Tet> tets_;
   std::vector<std::array<double, 2>> block_bounds_;
   bool scalars_are_floats_ = false;

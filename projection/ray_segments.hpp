@@ -10,11 +10,11 @@ namespace tessera::projection {
 /// Ray segments of one tile: the intervals of its view rays inside tetrahedra.
 ///
 /// Shape   structure of arrays of equal capacity; the first `size` elements are segments. capacity() excludes `padding`
-///         elements behind the last, which a SIMD store may overwrite.
+///         elements after the last element, which a SIMD store may overwrite.
 /// Order   unspecified. sorting/ orders the segments of a pixel by (front, back, tet).
-/// Units   front, back: planar depth of entry and exit along the view direction, world units, double, so that the
-///         length of a thin cell far away has an error of 1e-16 of its depth; scalars in the field's own unit at entry
-///         and exit.
+/// Units   front, back: planar depth of entry and exit along the view direction, in world units. Depths are doubles, so
+///         that the length of a thin cell far away has an error of 1e-16 of its depth. Scalars at entry and exit are in
+///         the field's own unit.
 /// Holds   front <= back, both inside the clipping range, all finite. Cells thinner than the rounding of a depth have
 ///         length zero; they are kept, so that the set of cells that a ray passes is exact.
 struct RaySegments {
@@ -44,8 +44,9 @@ struct RaySegments {
   }
 };
 
-/// Ray segments with a second value, in addition to the scalar, that is linear in each cell, such as the light that
-/// reaches it. A separate type, so that rasterizer, store and sinks compiled for RaySegments are not affected.
+/// Ray segments with a second value in addition to the scalar. This attribute is linear in each cell; an example is the
+/// light that reaches the cell. It is a type of its own, so that rasterizer, store and sinks compiled for RaySegments
+/// are not affected.
 struct AttributeSegments : RaySegments {
   std::vector<double> attribute_front, attribute_back;  ///< at entry and exit, in the attribute's own unit
 

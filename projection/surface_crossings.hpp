@@ -15,9 +15,9 @@
 #include "scene/lattice.hpp"
 #include "scene/surface_set.hpp"
 
-/// Crossings of rays with iso-surfaces. A crossing is stored among the ray segments, and stores, sorting and messages
-/// do not treat it specially. The cell's own segment is cut there, so that in depth order the crossing is between its
-/// parts.
+/// Crossings of rays with iso-surfaces. A crossing is stored among the ray segments; stores, sorting and messages treat
+/// it like a segment. The cell's own segment is cut at the crossing, so that in depth order the crossing is between the
+/// parts of the segment.
 namespace tessera::projection {
 
 /// The number of a crossing (scene::SurfaceSet), and the cosine of the angle between ray and normal.
@@ -26,8 +26,8 @@ struct Crossing {
   float cosine;
 };
 
-/// In double precision, a crossing is a segment of length zero whose front scalar is NaN: its lower bits are the
-/// crossing.
+/// In double precision, a crossing is a segment of length zero whose front scalar is NaN; the lower bits of the NaN
+/// contain the crossing.
 inline double marked(const Crossing& crossing) {
   constexpr std::uint64_t no_number = 0x7ff8ull << 48;
   return std::bit_cast<double>(no_number | static_cast<std::uint64_t>(crossing.number) << 32 |
@@ -39,10 +39,10 @@ inline Crossing crossing_of(double scalar_front) {
   return {static_cast<std::uint32_t>(bits >> 32 & 0xffff), std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
 }
 
-/// On the lattice, a crossing is the front end of a segment, with the surface in front of the segment's matter. The
-/// front scalar, which would be the surface's value, is replaced by a number beyond all values of the field, four times
-/// as far as the lattice extends. These marks are in the order of the crossings' numbers, with the cosine in the lower
-/// bits. A crossing at its segment's back end is a separate segment of length zero.
+/// On the lattice, a crossing is the front end of a segment; the surface is in front of the segment's matter. The front
+/// scalar, which would be the surface's value, is replaced by a mark: a number beyond all values of the field, four
+/// times as far as the lattice extends. Marks have the same order as the crossings' numbers, with the cosine in the
+/// lower bits. A crossing at the back end of a cell's segment is a separate segment of length zero.
 struct LatticeMark {
   static constexpr float first = 0x1p32f;
   static constexpr std::uint32_t first_bits = 0x4f800000, cosine_bits = 19, cosines = (1u << cosine_bits) - 1;
@@ -62,9 +62,9 @@ inline Crossing crossing_of(float scalar_front) {
           static_cast<float>(code & LatticeMark::cosines) / static_cast<float>(LatticeMark::cosines)};
 }
 
-/// The position of a segment's crossing on the lattice. Cells in double precision and on the lattice differ by some
-/// steps in the depth of their common face. So that a crossing is before all of the next cell's segment, one close to
-/// the back end is moved this far in front of it.
+/// The position of a segment's crossing on the lattice. Depths of a common face differ by some steps between a cell in
+/// double precision and a cell on the lattice. A crossing close to the back end is therefore moved `back_end_steps` in
+/// front of the back end, so that it is before all of the next cell's segment.
 constexpr std::int32_t back_end_steps = 32;
 struct LatticePlace {
   std::int32_t depth;
@@ -82,11 +82,13 @@ struct LatticePlace {
 struct IsoView {
   const scene::SurfaceSet* surfaces;
   const PixelSpace* space;
-  const scene::Lattice* lattice = nullptr;  ///< to whose steps depths will be rounded; null: not rounded
+  const scene::Lattice* lattice =
+      nullptr;  ///< the lattice to whose steps depths will be rounded; null: depths are not rounded
 
   [[nodiscard]] std::span<const double> values() const { return surfaces->iso_values(); }
 
-  /// The number of a crossing at `depth` of a segment from `front` to `back`; sets `depth` to its final depth.
+  /// Returns the number of a crossing at `depth` of a segment from `front` to `back`; sets `depth` to the crossing's
+  /// final depth.
   [[nodiscard]] std::uint32_t number(std::size_t iso, bool rises, double& depth, double front, double back) const {
     if (lattice == nullptr) return surfaces->crossing(iso, rises, scene::SurfaceSet::place_of(depth, front, back));
     const auto at = LatticePlace::of(lattice->depth_step(depth), lattice->depth_step(front), lattice->depth_step(back));
@@ -94,7 +96,8 @@ struct IsoView {
     return surfaces->crossing(iso, rises, at.place);
   }
 
-  /// The range [first, last) of surfaces in a cell with these scalars: those above `low`, up to `high`.
+  /// The range [first, last) of the surfaces in a cell with these scalars: those whose values are above `low`, up to
+  /// `high`.
   struct Range {
     std::size_t first, last;
   };
@@ -105,14 +108,16 @@ struct IsoView {
   }
 };
 
-/// The field's gradient in a tet of point data, of any length: zero if the field is constant; the normal of a flat tet.
+/// Returns a vector, of any length, in the direction of the field's gradient in a tet of point data; zero if the field
+/// is constant. For a flat tet, it is the normal of the tet.
 glm::dvec3 gradient_direction(const PreparedMesh& mesh, std::size_t tet);
 glm::dvec3 gradient_direction(const scene::TetMeshView& mesh, const scene::Tet& corners);
 
-/// Scaled to length 1; zero stays zero.
+/// Returns the direction scaled to length 1; zero stays zero.
 glm::dvec3 unit(const glm::dvec3& direction);
 
-/// Cosine of the angle between a ray's direction and a normal, neither of unit length; 1 if there is no normal.
+/// Returns the cosine of the angle between a ray's direction and a normal, which may have any length; 1 if there is no
+/// normal.
 float cosine_between(const glm::dvec3& ray, const glm::dvec3& normal);
 
 }  // namespace tessera::projection

@@ -16,23 +16,25 @@ namespace tessera::projection {
 /// The triangles of one surface of a frame. All processes have all triangles, in the same order.
 struct SurfaceFaces {
   const tessera::TriangleMesh* mesh;
-  std::uint32_t entering, leaving;           ///< scene::SurfaceSet::face_crossing() of rays that enter, or leave
-  std::span<const std::uint8_t> own{};       ///< by triangle: 1 if this process owns it
-  std::uint32_t process = 0, processes = 1;  ///< `own` empty: owns those with triangle % processes == process
+  std::uint32_t entering, leaving;      ///< scene::SurfaceSet::face_crossing() of rays that enter, or leave
+  std::span<const std::uint8_t> own{};  ///< one flag per triangle: 1 if this process owns it
+  std::uint32_t process = 0,
+                processes =
+                    1;  ///< if `own` is empty, the process owns the triangles with triangle % processes == process
   [[nodiscard]] bool owns(std::size_t triangle) const {
     return own.empty() ? triangle % processes == process : own[triangle] != 0;
   }
 };
 
-/// Surfaces of triangles in one view: the tiles that each triangle is in, and where rays meet it.
+/// Triangle surfaces in one view: determines the tiles in which each triangle is, and where rays meet it.
 ///
-/// Whether a ray passes through a triangle is determined by signs, not by depths: the signs of the three edges, with
-/// the tie rule of edge_sign.hpp, so that triangles with common corner positions leave no gap and do not overlap. Depth
-/// and value are means of the corners' with the edge functions as weights (planes_rasterizer.hpp). No ray meets a
+/// Signs, not depths, determine whether a ray passes through a triangle: the signs of the three edges, with the tie
+/// rule of edge_sign.hpp, so that triangles with common corner positions leave no gap and do not overlap. Depth and
+/// value are means of the corners' values with the edge functions as weights (planes_rasterizer.hpp). No ray meets a
 /// triangle that appears as a line, or one whose plane contains the eye.
 class FrameFaces {
  public:
-  /// All must outlive this object. Work runs in the caller's task arena (oneTBB).
+  /// All arguments must outlive this object. Runs in the caller's task arena (oneTBB).
   FrameFaces(std::span<const SurfaceFaces> surfaces, const PixelSpace& space, const TileGrid& grid);
 
   /// Whether this process has triangles in a tile.
@@ -52,10 +54,10 @@ class FrameFaces {
   std::span<const SurfaceFaces> surfaces_;
   const PixelSpace* space_;
   TileGrid grid_;
-  std::vector<std::vector<PixelVertex>> vertices_;  ///< by surface
-  std::vector<std::size_t> begin_;                  ///< by tile
+  std::vector<std::vector<PixelVertex>> vertices_;  ///< one list per surface
+  std::vector<std::size_t> begin_;                  ///< begin of each tile's triangles in `places_`
   std::vector<Place> places_;
-  std::vector<std::uint8_t> owned_;  ///< by tile
+  std::vector<std::uint8_t> owned_;  ///< one flag per tile
 };
 
 }  // namespace tessera::projection

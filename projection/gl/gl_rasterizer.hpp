@@ -13,24 +13,25 @@
 
 namespace tessera::projection {
 
-/// Rasterizes cells to ray segments on a device, by compute shaders (the outlook of Juliachs et al. 2007, section 6): a
-/// first pass counts them by pixel; a second one writes them into lists of this length.
+/// Rasterizes cells to ray segments on a device, by compute shaders (the outlook of Juliachs et al. 2007, section 6). A
+/// first pass counts the segments of every pixel; a second pass writes them into lists of this length.
 ///
 /// The segments are those of rasterize_planes(): six edge functions determine the two faces that a ray passes, with
-/// exact signs and the tie rule (edge_sign.hpp); where a double is not certain, 128-bit integers decide. Depths and
-/// scalars are interpolated in double precision from a face's corners in canonical order. Segments are not clipped:
-/// cells that cross the clipping range have no record. The segments of a list have any order; each contains its cell's
-/// number, so that sorting gives the same result for any order.
+/// exact signs and the tie rule (edge_sign.hpp); where a double does not give a certain sign, 128-bit integers do.
+/// Depths and scalars are interpolated in double precision from a face's corners in canonical order. Segments are not
+/// clipped, because cells that cross the clipping range have no record. The segments of a list may be in any order;
+/// each contains the number of its cell, so that sorting gives the same result for any order.
 ///
-/// Memory: at most `most_cells` cells are uploaded at a time (136 bytes each), however many there are.
+/// Memory: at most `most_cells` cells (136 bytes each) are uploaded at a time, whatever the number of cells.
 ///
-/// Used on the context's thread.
+/// May only be used on the context's thread.
 class GlRasterizer {
  public:
-  /// `most_cells`: uploaded at a time, 1 or more.
+  /// `most_cells`: the number of cells that are uploaded at a time, at least 1.
   GlRasterizer(const gl::Context& context, std::size_t most_cells);
 
-  /// Cells, and the pixels for which they are rasterized: `rect`, numbered from `first_pixel` on, row by row.
+  /// Cells to rasterize, and the pixels for which they are rasterized: those of `rect`, which are numbered row by row,
+  /// from `first_pixel` on.
   struct Job {
     std::span<const CellRecord> cells;
     CellUnits units;
@@ -40,12 +41,13 @@ class GlRasterizer {
   /// Queues commands that add every pixel's number of segments to its entry in `counts`.
   void count(std::span<const Job> jobs, const gl::Buffer& counts);
 
-  /// The target of segments: element next[pixel]++ of each of the other buffers.
+  /// Where segments are written: element next[pixel]++ of each of the other buffers.
   struct Lists {
-    const gl::Buffer* next;     ///< one uint per pixel: the first free element of its list
-    const gl::Buffer* keys;     ///< four uints: keys of front and back, the low half of the tet, the element
-    const gl::Buffer* values;   ///< four floats: length and scalars at front and back in the jobs' units, -1
-    const gl::Buffer* scalars;  ///< two floats: the scalars again, for use after light has replaced the values
+    const gl::Buffer* next;    ///< one uint per pixel: the first free element of the pixel's list
+    const gl::Buffer* keys;    ///< four uints: keys of front and back, the low half of the tet, the element
+    const gl::Buffer* values;  ///< four floats: length, and scalars at front and back, in the jobs' units; -1
+    const gl::Buffer*
+        scalars;  ///< two floats: the scalars again, which are still needed after light has replaced the values
   };
   /// Queues commands that write all of the jobs' segments.
   void fill(std::span<const Job> jobs, const Lists& lists);

@@ -2,13 +2,14 @@
 // Finds the pixels that a batch's cells cover, from the edges of the outline alone, one cell or one pixel per lane.
 // Included once per instruction set (Highway's include guard idiom).
 //
-// What      Hits: pixels whose centre is inside the cell's outline, where the smallest of its four edge functions is
+// What      Hits are pixels whose centre is inside the cell's outline, where the smallest of its four edge functions is
 //           positive. They are packed into the queue; those close to an edge are marked as uncertain.
 // How       Edge functions are linear, so from one block of pixels to the next each changes by a constant: four
 //           additions per block. Cells of a few pixels are processed together instead, one cell per lane.
-// Accuracy  Float. The rounding of the sums is below outline_uncertainty; within it, lattice_cross-inl.h determines the
-//           sign.
-// Ends      Blocks extend beyond the rectangle only if it is narrower than a block: lanes there are masked.
+// Accuracy  Float. The rounding error of the sums is below outline_uncertainty; for values below this,
+//           lattice_cross-inl.h determines the exact sign.
+// Ends      Blocks extend beyond the rectangle only if the rectangle is narrower than a block; the lanes outside are
+//           masked.
 
 #if defined(TESSERA_PROJECTION_LATTICE_COVER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_COVER_INL_H_
@@ -28,8 +29,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// A block of pixels is a vector of lanes: approximately square, or half as high and twice as wide, or the reverse; the
-/// shape is used with which the fewest blocks cover a cell's box.
+/// A block of pixels is a vector of lanes. It is approximately square, or half as high and twice as wide, or the
+/// reverse. The shape is used with which the fewest blocks cover a cell's box.
 struct BlockShape {
   alignas(64) std::int32_t column[lanes], row[lanes];
   std::int32_t width, height;
@@ -42,16 +43,16 @@ constexpr BlockShape block_of(int width) {
 constexpr int usual_width = lanes >= 8 ? 4 : 2;
 constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual_width), block_of(usual_width / 2)};
 
-/// Beyond this, an outline's sign is certain: 1 (2^-22 of the largest value) for the start, and for each addition from
-/// block to block a quarter of it for the rounding of the sum, and a quarter for that of the step. Next to a narrow
-/// rectangle, whose blocks extend beyond it, values are up to 1.4 times as large.
+/// Above this value, an outline's sign is certain. The start value contributes 1 (2^-22 of the largest value). Each
+/// addition from block to block contributes a quarter for the rounding of the sum, and a quarter for the rounding of
+/// the step. Next to a narrow rectangle, whose blocks extend beyond it, values are up to 1.4 times as large.
 constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
-/// first, first + 1... (Iota() of a variable would go through memory, lane by lane.)
+/// Returns first, first + 1... (Iota() of a variable would go through memory, lane by lane.)
 HWY_INLINE VI numbers_from(int first) { return Iota(DI(), 0) + Set(DI(), first); }
 
-/// Appends the lanes that are hit, or may be, behind `size` hits; returns the new size.
+/// Appends the lanes that are hit, or may be hit, after `size` hits in the queue; returns the new size.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
   const DF df;
   const DI d;
@@ -64,14 +65,14 @@ HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, s
   return size + pack.count();
 }
 
-/// Cells of a few pixels: as many of a batch as there are lanes, from `from` on, process their candidate pixels
-/// together, row by row, each from its own corner.
+/// Cells of a few pixels. As many cells of a batch as there are lanes, from cell `from` on, process their candidate
+/// pixels together, row by row; each cell begins at its own corner.
 struct SmallCells {
-  // Cycles, roughly as measured with AVX-512: of blocks, and of one step of all lanes here.
+  // Costs in cycles, roughly as measured with AVX-512: of a block, and of the steps of all lanes here.
   static constexpr int block_cost = 8, cell_cost = 45, step_cost = 9, start_cost = 60;
 
-  /// The subset of `cells` (one bit each) that is faster this way: those up to some size, if their largest number of
-  /// candidate pixels costs less than the blocks of all.
+  /// Returns the subset of `cells` (one bit each) that is faster this way: the cells up to some size, if their largest
+  /// number of candidate pixels costs less than the blocks of all these cells.
   HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
     const DI d;
     const auto takes = mask_of(cells, from);
@@ -92,7 +93,7 @@ struct SmallCells {
     return 0;
   }
 
-  /// Covers `cells` (one bit each). drain() makes room in the queue.
+  /// Finds the hits of `cells` (one bit each). drain() is called to make room in the queue.
   template <class Drain>
   HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, int from,
                                HitQueue& queue, const Drain& drain) {
@@ -140,12 +141,12 @@ struct SmallCells {
   }
 };
 
-/// Blocks of pixels over each of a batch's cells.
+/// Covers each of a batch's cells with blocks of pixels.
 class CellBlocks {
  public:
-  /// Places blocks over all cells at once. `rect`: the pixels, relative to the square's corner. Blocks that would
-  /// extend beyond it are moved inwards: the edge functions exclude pixels outside the cell. In rectangles narrower
-  /// than a block this is not enough; those blocks are `clipped`.
+  /// Places blocks over all cells at once. `rect` contains the pixels, relative to the square's corner. Blocks that
+  /// would extend beyond `rect` are moved inwards; this is correct because the edge functions exclude pixels outside
+  /// the cell. In rectangles narrower than a block this is not enough; those blocks are `clipped`.
   HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect) {
     right_ = rect.x1, bottom_ = rect.y1;
     const DI d;
@@ -198,7 +199,8 @@ class CellBlocks {
     }
   }
 
-  /// Processes block after block, row by row, in one loop, because the number of blocks in a row is hard to predict.
+  /// Processes all blocks, row by row, in one loop, because the number of blocks in a row is hard for the processor to
+  /// predict.
   HWY_INLINE void cover(const CellParts& parts, int t, HitQueue& queue) const {
     const DI d;
     const DF df;
@@ -219,8 +221,8 @@ class CellBlocks {
       MF among = Eq(x, x);
       if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
       size = push_hits(least, among, hits, queue, size);
-      // All bits are set behind the last block of a row. (The result of a comparison would be in a part of a register,
-      // and combining it with the rest would wait for the count of hits.)
+      // All bits of `wraps` are set after the last block of a row. (The result of a comparison would be in a part of a
+      // register, and combining it with the rest would wait for the count of hits.)
       const int wraps = (--left - 1) >> 31;
       left += columns & wraps;
       const int step = (wraps & CellBatch::most) + t;
@@ -231,7 +233,7 @@ class CellBlocks {
   }
 
  private:
-  /// The lanes of a block that are in the rectangle.
+  /// Returns the lanes of a block that are in the rectangle.
   HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
     const DI d;
     const VI x = Load(d, shape.column) + Set(d, left_[t] + block % columns_[t] * shape.width);
@@ -240,8 +242,8 @@ class CellBlocks {
   }
 
   int right_, bottom_;
-  // By cell: the first block's corner, the number of blocks in a row and in all, and the increments from each to the
-  // next; the second half is for the last block of a row.
+  // One value per cell: the first block's corner, the number of blocks in a row and in all, and the increments from
+  // each block to the next; the second half is for the last block of a row.
   alignas(64) std::int32_t left_[CellBatch::most], top_[CellBatch::most], columns_[CellBatch::most];
   alignas(64) std::int32_t blocks_[CellBatch::most], shape_[CellBatch::most], clipped_[CellBatch::most];
   alignas(64) std::int32_t first_hit_[CellBatch::most], hit_step_[2 * CellBatch::most];

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Computes where rays pass a cell: the segments of a queue of hits, one hit per lane, of any cell. Included once per
-// instruction set (Highway's include guard idiom).
+// Computes where rays pass through a cell: turns a queue of hits into segments, one hit per lane; the hits may belong
+// to any cell of the batch. Included once per instruction set (Highway's include guard idiom).
 //
 // What      The signs of the inner edge functions E (lattice_shapes-inl.h) select the two faces that a ray passes:
-//             two and two     face 0 or 1 by the sign of E_1, face 2 or 3 by that of E_2;
-//             one and three   face 0, and of the three: 1 where E_0 and E_1 are positive, else 2 or 3 by that of E_2.
+//             two and two     face 0 or 1 by the sign of E_1, face 2 or 3 by the sign of E_2;
+//             one and three   face 0, and one of the three: face 1 where E_0 and E_1 are positive, else face 2 or 3 by
+//                             the sign of E_2.
 //           A face is a plane over the square's pixels: depth = start + x d_x + y d_y, scalar and weight in the same
 //           way, with (x, y) the pixel relative to the square's centre. The nearer of the two depths is the segment's
 //           front.
 // How       Columns and rows are 16-bit halves of one integer, and so are gradients, so that a pair of products is one
-//           instruction (dot_of_halves); the upper 16 bits of a gradient take a second one. Under perspective, the
-//           planes are those of 1 / w and q / w, relative to corner c of the face: q = q_c + plane / weight.
-// Bits      Integers, and float operations within a lane: cells with a common face compute the same bits there.
-// Ends      Signs that float does not decide are determined exactly, out of line (30 hits in a million).
+//           instruction (dot_of_halves); the upper 16 bits of a gradient take a second instruction. Under perspective,
+//           the planes are those of 1 / w and q / w, relative to corner c of the face: q = q_c + plane / weight.
+// Bits      Only integers, and float operations within a lane, are used: cells with a common face compute the same bits
+//           there.
+// Ends      If a float does not determine a sign with certainty, the exact sign is computed out of line (30 hits in a
+//           million).
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
@@ -37,7 +40,7 @@ HWY_INLINE VI add_pairs(VI a, VI b) {
 }
 
 #if HWY_TARGET <= HWY_AVX2
-/// Flags of as many cells as there are lanes, for lookups by lanes.
+/// One flag for each of as many cells as there are lanes; lanes can look up the flag of any of these cells.
 struct CellFlags {
   VI three, behind;
   HWY_INLINE CellFlags(const CellParts& parts, int from)
@@ -45,8 +48,9 @@ struct CellFlags {
         behind(Set(DI(), static_cast<std::int32_t>(parts.behind >> from))) {}
 };
 
-/// Values of the hits' cells, each hit of any cell among as many as there are lanes, from `from` on. A value of all
-/// these cells is one vector to permute from; with AVX-512, one permutation selects from two vectors.
+/// Provides the values of the hits' cells. Each hit may belong to any of as many cells as there are lanes, from cell
+/// `from` on. A value of all these cells is one vector, which is permuted; with AVX-512, one permutation selects from
+/// two vectors.
 template <bool two, bool with_three>
 class AnyCell {
  public:
@@ -82,7 +86,7 @@ class AnyCell {
 };
 #endif
 
-/// The same, if all hits are of one cell.
+/// Provides the same values if all hits belong to one cell.
 template <bool is_three>
 class OneCell {
  public:
@@ -119,12 +123,13 @@ class HitCrossing {
     center_pixel_ = Set(DI(), (CellBatch::center - rect.y0) * rect.width() + CellBatch::center - rect.x0);
   }
 
-  /// Whether hits of as many cells as lanes can be crossed together: if lanes find their cells' values by permuting.
+  /// Whether hits of as many cells as there are lanes can be processed together. This requires that lanes can get their
+  /// cells' values by permuting.
   static constexpr bool together = lanes >= 8;
 
 #if HWY_TARGET <= HWY_AVX2
-  /// Crosses as many hits of the cells from `from` on as fill lanes; the rest stays. `two`, `three`: the shapes that
-  /// the cells may have.
+  /// Processes hits of the cells from `from` on as long as they fill all lanes; the remaining hits stay in the queue.
+  /// `two`, `three`: the shapes that the cells may have.
   template <bool two, bool three>
   HWY_INLINE void drain(HitQueue& queue, int from) {
     const DI d;
@@ -135,7 +140,7 @@ class HitCrossing {
     Store(Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
-  /// Crosses the rest, too.
+  /// Processes the remaining hits, too.
   template <bool two, bool three>
   HWY_INLINE void finish(HitQueue& queue, int from) {
     drain<two, three>(queue, from);
@@ -144,8 +149,8 @@ class HitCrossing {
     queue.size = 0;
   }
 #endif
-  /// Crosses the hits that a cell has added; if hits of all cells are crossed together, they may wait for others, until
-  /// finish_cells().
+  /// Processes the hits that a cell has added. If hits of all cells are processed together, they may stay in the queue
+  /// until finish_cells().
 #if HWY_TARGET <= HWY_AVX3
   HWY_INLINE void drain_cell(HitQueue& queue, int t) {
     if (queue.size < HitQueue::worth_draining) return;
@@ -213,7 +218,7 @@ class HitCrossing {
     }
   }
 
-  /// Column and row of hits relative to the square's centre, 16 bits each.
+  /// Returns column and row of hits relative to the square's centre, 16 bits each.
   static HWY_INLINE VI place_of(VI hit) {
     const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
@@ -223,9 +228,9 @@ class HitCrossing {
 
   /// The inner edge functions at hits, and which of the hits are confirmed.
   struct InnerEdges {
-    VF edge[3];              ///< as in CellParts::inner; the first is zero if no cell has three
-    MF uncertain;            ///< lanes where float does not decide a sign
-    MF hits_cell, touching;  ///< set by settle(); before it, all lanes with a hit
+    VF edge[3];              ///< as in CellParts::inner; the first is zero if no cell has three inner edges
+    MF uncertain;            ///< lanes where a float does not determine a sign with certainty
+    MF hits_cell, touching;  ///< set by settle(); before that, `hits_cell` contains all lanes with a hit
   };
   template <class Cells>
   HWY_INLINE InnerEdges inner_edges(VI hit, VI place, std::size_t count, const Cells& cells) const {
@@ -248,7 +253,7 @@ class HitCrossing {
     return inner;
   }
 
-  /// The two faces that the lanes' rays pass, by their positions in Roles::face.
+  /// The two faces that the lanes' rays pass, as positions in Roles::face.
   template <class Cells>
   class PassedFaces {
    public:
@@ -258,14 +263,14 @@ class HitCrossing {
           last_(cells.choice(RebindMask(DI(), inner[2] <= Zero(DF())))),
           first_of_three_(RebindMask(DI(), And(inner[0] > Zero(DF()), inner[1] > Zero(DF())))) {}
 
-    /// The front face's value, or that of one face against three.
+    /// Returns the front face's value, or that of the single face against three.
     HWY_INLINE VI first(const CellParts::ByFace& numbers) const {
       if constexpr (!Cells::may_be_two)
         return cells_.number(numbers[0]);
       else
         return cells_.number(numbers[0], numbers[1], first_of_two_);
     }
-    /// The back face's value, or that of the one among three faces that the inner edges select.
+    /// Returns the back face's value, or that of the face, among the three, that the inner edges select.
     HWY_INLINE VI second(const CellParts::ByFace& numbers) const {
       const VI others = cells_.number(numbers[2], numbers[3], last_);
       if constexpr (!Cells::may_be_three) return others;
@@ -284,12 +289,12 @@ class HitCrossing {
     MI first_of_three_;
   };
 
-  /// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
+  /// Depth (in steps) and scalar where the lanes' rays pass one side of the cell.
   struct Crossing {
     VI depth;
     VF scalar;
   };
-  /// `of_face(values)`: in every lane, the value of the face that its ray passes.
+  /// `of_face(values)` returns, in every lane, the value of the face that the lane's ray passes.
   template <class OfFace, class Cells>
   HWY_INLINE Crossing crossing(const OfFace& of_face, VI place, const Cells& cells) const {
     const DF df;
@@ -311,7 +316,7 @@ class HitCrossing {
     return c;
   }
 
-  /// 1 / weight, from a plane's integers.
+  /// Returns 1 / weight from the integer value of a plane.
   static HWY_INLINE VF inverse_weight(VI weight) {
     const DF d;
     const VF w = ConvertTo(d, weight);
@@ -324,7 +329,7 @@ class HitCrossing {
   HWY_INLINE void append_all(std::size_t count, VI hit, VI pixel, const SegmentLanes& segments) {
     const DI d;
     const DF df;
-    // Read before the first store, which could write to any of them as far as a compiler can determine.
+    // `size` is read before the first store, because a compiler must assume that any of the stores could change it.
     const std::size_t at = out_.size;
     std::int32_t *const pixels = out_.pixel.data(), *const fronts = out_.front.data(), *const backs = out_.back.data();
     float *const scalar_fronts = out_.scalar_front.data(), *const scalar_backs = out_.scalar_back.data();
@@ -376,7 +381,7 @@ class HitCrossing {
   const MaskedRect& pixels_;
   SegmentStream& out_;
   RasterCounts& counts_;
-  VI pixel_step_, center_pixel_;  ///< pixels in a row and 1, in 16 bits each; the pixel of column and row 0
+  VI pixel_step_, center_pixel_;  ///< number of pixels in a row, and 1, in 16 bits each; the pixel of column and row 0
 };
 
 }  // namespace HWY_NAMESPACE

@@ -2,9 +2,9 @@
 // Finds the segments of a batch that may cross a surface. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What   The indices of the segments whose scalars extend from below the highest of their cell's surfaces to the lowest
-//        or above, packed; and their cells.
-// Ends   A superset: lattice_cut-inl.h compares with each surface's value.
+// What   Returns the indices, packed, of the segments whose scalars extend from below the highest of their cell's
+//        surfaces to the lowest or above; and their cells.
+// Ends   The result is a superset: lattice_cut-inl.h compares with each surface's value.
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
@@ -23,15 +23,16 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Indices of `count` segments, with padding for a vector of lanes behind them, and their cells, one bit each.
+/// Indices of `count` segments, followed by padding for a vector of lanes; and the cells of these segments, one bit
+/// each.
 struct CrossedSegments {
   const std::int32_t* numbers;
   std::size_t count;
   unsigned cells;
 };
 
-/// The segments from `first` on whose scalars extend from below the last of their cell's surfaces to the first or
-/// above.
+/// Finds the segments, from index `first` on, whose scalars extend from below the last of their cell's surfaces to the
+/// first or above.
 HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
                                                      LatticeSurfaces& surfaces) {
   const DI d;
@@ -47,7 +48,7 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
     const auto reaches =
         And(Max(from, to) >= lookup_16(surfaces.low, cell), Min(from, to) < lookup_16(surfaces.high, cell));
     const auto is = And(reaches, FirstN(df, stream.size - i));
-    // Without a branch, because it would be unpredictable.
+    // Packing does without a branch, because the branch would be unpredictable.
     const LanePacker pack(RebindMask(d, is));
     StoreU(pack(number), d, crossed + count);
     count += pack.count();

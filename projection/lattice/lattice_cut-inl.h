@@ -2,15 +2,16 @@
 // Cuts segments where they cross iso-surfaces, one segment per lane. Included once per instruction set (Highway's
 // include guard idiom).
 //
-// What      A segment from depth z_0 to z_1 with scalars s_0 to s_1 crosses the surface of value v, if v is between
-//           them, at the depth z_0 + (v - s_0) (z_1 - z_0) / (s_1 - s_0), rounded to a step of the lattice. It becomes
-//           the parts between its crossings; a part's front scalar is the mark of the crossing at which it begins
-//           (surface_crossings.hpp).
-// Accuracy  Depths in double precision, rounded to half a step. Cosines of normal and ray in double precision, stored
-//           with LatticeMark's bits.
-// Bits      Values and scalars are rounded in the same way as those of vertices, so cells with a common face agree on
-//           whether a ray crosses a surface in it.
-// Ends      A crossing at a segment's back end is a segment of its own, and so is the first of two at its front.
+// What      A segment from depth z_0 to z_1 with scalars s_0 to s_1 crosses the surface of value v, if v is between s_0
+//           and s_1, at the depth z_0 + (v - s_0) (z_1 - z_0) / (s_1 - s_0), rounded to a step of the lattice. The
+//           segment is replaced by the parts between its crossings; a part's front scalar is the mark of the crossing
+//           at which the part begins (surface_crossings.hpp).
+// Accuracy  Depths are computed in double precision, and rounded to half a step. Cosines of normal and ray are computed
+//           in double precision, and stored with LatticeMark's bits.
+// Bits      Surface values and scalars are rounded in the same way as those of vertices, so cells with a common face
+//           agree on whether a ray crosses a surface in this face.
+// Ends      A crossing at a segment's back end is a segment of its own, and so is the first of two crossings at its
+//           front.
 
 #if defined(TESSERA_PROJECTION_LATTICE_CUT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CUT_INL_H_
@@ -33,7 +34,7 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
 /// Cuts segments of a batch, after find_surfaces() and find_normals(). Appends the part before each crossing, or the
-/// crossing itself (surface_crossings.hpp); a segment's own place keeps its last part.
+/// crossing itself (surface_crossings.hpp). The last part of a segment stays at the index of the segment.
 class SurfaceCuts {
  public:
   HWY_INLINE SurfaceCuts(const LatticeView& view, const LatticeSurfaces& surfaces, const MaskedRect& pixels,
@@ -55,7 +56,7 @@ class SurfaceCuts {
   }
 
  private:
-  /// The current parts of the segments: where they begin, and their front scalar or mark.
+  /// The parts of the segments that are not cut yet: where they begin, and their front scalar or mark.
   struct Part {
     VI front;
     VF scalar;
@@ -103,7 +104,7 @@ class SurfaceCuts {
           IfThenElse(at_back, at_limit, IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
       depth = Min(depth, limit);
       const VF mark = mark_of(surface, rises, at, cosine);
-      // A crossing at the back end is a segment of its own, and so is the first of two at the front.
+      // A crossing at the back end is a segment of its own, and so is the first of two crossings at the front.
       const MI alone = And(crossed, Or(at == place(Place::back_end), level));
       const MI before = AndNot(alone, crossed);
       const MI at_front = And(before, depth == part.front);
@@ -116,7 +117,7 @@ class SurfaceCuts {
       part.front = IfThenElse(before, depth, part.front);
       part.scalar = IfThenElse(RebindMask(df, before), mark, part.scalar);
     }
-    // Lanes without a segment write behind the last one.
+    // Lanes that have no segment write after the last segment.
     const VI spare = Iota(d, 0) + Set(d, static_cast<std::int32_t>(out_.size));
     const VI place = IfThenElse(here, segment, spare);
     ScatterIndex(part.front, d, out_.front.data(), place);
@@ -124,15 +125,15 @@ class SurfaceCuts {
   }
 
   using Place = scene::SurfaceSet::Place;
-  /// The lowest number of a crossing at this place.
+  /// Returns the lowest number of a crossing at this place.
   HWY_INLINE VI place(Place p) const { return Set(DI(), static_cast<std::int32_t>(p) * numbers_a_place_); }
 
-  /// The first surfaces that the cells' segments may cross.
+  /// Returns the first surfaces that the cells' segments may cross.
   HWY_INLINE VF first_values(MI rises, VI cell) const {
     return IfThenElse(RebindMask(DF(), rises), lookup_16(cells_.low, cell), lookup_16(cells_.high, cell));
   }
 
-  /// Same as LatticeMark::of(the crossing).
+  /// Returns the same as LatticeMark::of() for the crossing.
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
     const DI d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());
@@ -141,7 +142,7 @@ class SurfaceCuts {
     return BitCast(DF(), bits + Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
   }
 
-  /// The lower bits of the lanes' marks.
+  /// Returns the lower bits of the lanes' marks.
   HWY_INLINE VI cosine_code(VI hit, VI cell) const {
     const DI d;
     const DF df;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light on the matter of a batch's segments, a segment a lane. Included once per instruction set (Highway's include
-// guard idiom).
+// The light on the matter of a batch's segments, one segment per lane. Included once per instruction set (Highway's
+// include guard idiom).
 //
-// What      SegmentLight of Blinn and Phong's model (tessera/shading.hpp): own = ambient + diffuse |n l| and
-//           white = specular |n h|^shininess, with the normal n of the segment's cell, the light l, and the halfway
+// What      Computes the SegmentLight of Blinn and Phong's model (tessera/shading.hpp): own = ambient + diffuse |n l|
+//           and white = specular |n h|^shininess, with the normal n of the segment's cell, the light l, and the halfway
 //           vector h of light and ray. The compositor applies it to the segment's integral
 //           (compositor/window_kernel.hpp).
-// How       Light is infinitely far away, so `own` is a number of the cell. Orthographic rays have one direction, and
-//           `white` is one, too; with perspective it is computed by segment.
+// How       Light is infinitely far away, so `own` is one number per cell. Orthographic rays have one direction, so
+//           `white` is one number per cell, too; with perspective, `white` is computed for each segment.
 // Accuracy  Double precision, rounded to floats (scene/error_budget.hpp).
-// Bits      A segment's numbers depend on its cell and pixel alone.
-// Ends      Without a normal, the color stays as it is: own = 1, white = 0.
+// Bits      The light of a segment depends only on its cell and pixel.
+// Ends      Without a normal, the color stays unchanged: own = 1, white = 0.
 
 #if defined(TESSERA_PROJECTION_LATTICE_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_LIGHTS_INL_H_
@@ -30,7 +30,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Lights the segments of batches of cells in one square.
+/// Computes the lights of the segments of batches of cells in one square.
 class SegmentLights {
  public:
   SegmentLights(const LatticeView& view, const MaskedRect& pixels)
@@ -44,7 +44,7 @@ class SegmentLights {
     if (length > MatterLight::nothing) halfway_ = half / length;
   }
 
-  /// The batch's segments are those from `first` on.
+  /// Sets the lights of a batch's segments, which are those from index `first` on.
   HWY_NOINLINE void set(const CellBatch& batch, std::size_t first, SegmentStream& out) {
     find(batch, cells_of(out, first));
     const DF df;
@@ -57,7 +57,7 @@ class SegmentLights {
   }
 
  private:
-  /// The cells that have segments, a bit each.
+  /// Returns the cells that have segments, one bit each.
   static HWY_INLINE unsigned cells_of(const SegmentStream& out, std::size_t first) {
     const DI d;
     VI cells = Zero(d);
@@ -101,7 +101,7 @@ class SegmentLights {
                      });
   }
 
-  /// Perspective: `white` of hits.
+  /// Perspective: returns `white` for hits.
   HWY_INLINE VF white_of_rays(VI hit, VI cell) const {
     const RayLanes ray(rays_, hit);
     const auto white = [&](VD x, VD y, VD z, VD n_x, VD n_y, VD n_z, VD specular) HWY_ATTR {
@@ -135,8 +135,8 @@ class SegmentLights {
   const MatterLight& light_;
   SquareRays rays_;
   Vectors to_light_;
-  glm::dvec3 halfway_{0};  ///< orthographic: of length one; zero: the light is straight behind
-  // By cell.
+  glm::dvec3 halfway_{0};  ///< orthographic: of length one; zero if the light is straight behind the scene
+  // One value per cell.
   alignas(64) float own_[CellBatch::most] = {}, white_[CellBatch::most] = {};
   alignas(64) double normal_[3][CellBatch::most] = {}, specular_[CellBatch::most] = {};
 };

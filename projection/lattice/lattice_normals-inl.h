@@ -56,7 +56,7 @@ struct RayLanes {
   }
 };
 
-/// Three coordinates, for as many cells as there are lanes.
+/// Vectors of three coordinates, one for each of as many cells as there are lanes.
 struct Vectors {
   VD x, y, z;
 };
@@ -69,7 +69,7 @@ HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
 }
 HWY_INLINE VD largest(const Vectors& v) { return Max(Max(Abs(v.x), Abs(v.y)), Abs(v.z)); }
 
-/// Same as unit(gradient_direction()) of surface_crossings.hpp, except for rounding; one cell per lane.
+/// Returns the same as unit(gradient_direction()) of surface_crossings.hpp, except for rounding; one cell per lane.
 HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[4]) {
   const VD zero = Zero(DD());
   Vectors edge[3];
@@ -79,21 +79,21 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[
     change[i] = scalar[i + 1] - scalar[0];
     size = Max(size, largest(edge[i])), most = Max(most, Abs(change[i]));
   }
-  // Edges of size 1: for no mesh do squares or products of them leave the range of a double.
+  // The edges are scaled to size 1, so that their squares and products are in the range of a double for any mesh.
   const VD one = Set(DD(), 1), per_size = one / size, per_change = one / most;
   const Vectors e1 = edge[0] * per_size, e2 = edge[1] * per_size, e3 = edge[2] * per_size;
   const VD c1 = change[0] * per_change, c2 = change[1] * per_change, c3 = change[2] * per_change;
   const Vectors direction = cross(e2, e3) * c1 + cross(e3, e1) * c2 + cross(e1, e2) * c3;
   const VD square = dot(direction, direction);
   const Vectors unit = direction * (one / Sqrt(square));
-  // For a cell that is flat, without extent or with a single scalar, the divisions gave NaN.
+  // For a cell that is flat, without extent or with a single scalar, the divisions have produced NaN.
   const VD least = Set(DD(), 1e-300);
   const auto is = And(square > zero, And(size > least, most > least));
   return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
 
-/// Calls take(numbers, count, normal, scalar) for groups of some of a batch's cells, a bit each: `count` lanes, with
-/// the cells' numbers in the batch, their normals and their corners' scalars.
+/// Calls take(numbers, count, normal, scalar) for groups of the given cells of a batch (one bit each). A group has
+/// `count` lanes, with the cells' numbers in the batch, their normals and their corners' scalars.
 template <class Take>
 HWY_INLINE void with_normals(const LatticeView& view, const CellBatch& batch, unsigned cells, const Take& take) {
   const DD d;
@@ -125,8 +125,8 @@ HWY_INLINE void with_normals(const LatticeView& view, const CellBatch& batch, un
   }
 }
 
-/// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
-/// their time.
+/// Computes the normals and cosines of the given cells of a batch (one bit each). Should be called some time after
+/// find_surfaces(), whose prefetches have then completed.
 HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
                                       LatticeSurfaces& surfaces) {
   const DD d;
@@ -150,7 +150,7 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
                });
 }
 
-/// Prefetches the data of cell t that find_normals() will read.
+/// Prefetches the data of cell t that find_normals() reads.
 HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch, int t) {
   const scene::TetMeshView& mesh = view.projected.mesh->mesh();
   for (const std::uint32_t v : view.projected.mesh->tets()[batch.tet[t]]) {
@@ -159,16 +159,16 @@ HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch
   }
 }
 
-/// The same for all regular cells.
+/// Prefetches the same data for all regular cells.
 HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch) {
   for (unsigned left = ~batch.irregular & ((1u << batch.size) - 1); left != 0; left &= left - 1)
     prefetch_corners(view, batch, __builtin_ctz(left));
 }
 
-/// The cells of a batch that have surfaces, one bit each; irregular ones are treated as having none.
+/// Returns the cells of a batch that have surfaces, one bit each. Irregular cells are treated as having no surfaces.
 HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
-  // By rounding, a scalar may cross a value: the last place of a float (64 steps at most), the value's own rounding,
-  // and a gradient's over the square.
+  // By rounding, a scalar may cross a surface's value. The errors are the last place of a float (64 steps at most), the
+  // rounding of the surface's value, and the rounding of a gradient over the square.
   constexpr float margin = 256;
   const DF df;
   const DI d;

@@ -2,10 +2,10 @@
 // A batch's cells, with their edges and faces in the order of their roles (lattice_shapes-inl.h), so that lanes with
 // different cells execute the same code. Included once per instruction set (Highway's include guard idiom).
 //
-// What   CellParts: outline, inner edges and face planes by role, one cell per lane; and the queue of hits between
-//        lattice_cover-inl.h, which finds them, and lattice_cross-inl.h, which makes them segments.
-// How    The role of an edge or a face follows from the four bits of the front faces: a table of 16 entries contains
-//        the edge or face, and selects move its values to the place of the role.
+// What   CellParts contains outline, inner edges and face planes by role, one cell per lane. HitQueue is the queue of
+//        hits between lattice_cover-inl.h, which finds hits, and lattice_cross-inl.h, which turns them into segments.
+// How    The role of an edge or a face follows from the four bits of the front faces. A table of 16 entries contains
+//        the edge or face of each role, whose values are then moved to the place of the role.
 // Bits   Values are moved, not computed. A face plane's steps are split into 16-bit halves, whose products with a
 //        column or row are exact in 32 bits.
 
@@ -28,10 +28,11 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// The edge or face in a role: [role][front faces].
+/// Which edge or face has a role; indexed by [role][front faces].
 struct PartTable {
   alignas(64) std::int32_t outline[4][16];  ///< Roles::outline
-  /// One face against three: Roles::inner. Two against two: none, the edge of the front faces, that of the back faces.
+  /// One face against three: Roles::inner. Two against two: the first is unused, then the edge of the front faces, and
+  /// the edge of the back faces.
   alignas(64) std::int32_t inner[3][16];
   alignas(64) std::int32_t face[4][16];                       ///< Roles::face
   alignas(64) std::int32_t three[16], behind[16], valid[16];  ///< 1 or 0; Roles::single_behind, Roles::valid
@@ -51,15 +52,16 @@ constexpr PartTable make_part_table() {
 }
 constexpr PartTable part_table = make_part_table();
 
-/// Whether some valid cell has `what` in a role.
+/// Whether some valid cell has the edge or face `what` in a role.
 constexpr bool occurs(const std::int32_t (&part)[16], std::int32_t what) {
   for (unsigned front = 0; front < 16; ++front)
     if (role_table.roles[front].valid && part[front] == what) return true;
   return false;
 }
 
-/// Values by cell of the batch. Edge functions are start + x column + y row, relative to the square's centre
-/// (CellBatch). So are planes, with x = 2^16 high.x + low.x, and (x, y) in the lower and upper 16 bits of one integer.
+/// Values of a batch's cells, one per cell. Edge functions are start + x column + y row, relative to the square's
+/// centre (CellBatch). Planes have the same form, with x = 2^16 high.x + low.x, and (x, y) in the lower and upper 16
+/// bits of one integer.
 struct CellParts {
   struct Edge {
     alignas(64) float start[CellBatch::most], x[CellBatch::most], y[CellBatch::most];
@@ -73,10 +75,10 @@ struct CellParts {
   Edge outline[4], inner[3];
   Planes depth, scalar, weight;
   alignas(64) ByFace depth_c, scalar_c;  ///< scalar_c contains floats
-  unsigned three, behind;                ///< bit t: one face against three; this face is the back face
+  unsigned three, behind;                ///< bit t: cell t has one face against three; the single face is the back face
 };
 
-/// Sorts the parts of a batch's cells [from, from + lanes).
+/// Moves the values of a batch's cells [from, from + lanes) to the places of their roles.
 class PartOrder {
  public:
   HWY_INLINE PartOrder(const CellBatch& batch, int from, CellParts& parts)
@@ -85,8 +87,8 @@ class PartOrder {
         front_(And(BitCast(DI(), Load(hn::RebindToUnsigned<DI>(), batch.bits + from)), Set(DI(), 15))),
         parts_(parts) {}
 
-  /// Sets `three` and `behind`, which must be zero before the first call. Returns the cells with candidate pixels, one
-  /// bit each.
+  /// Sets the bits of `three` and `behind`, which must be zero before the first call. Returns the cells that have
+  /// candidate pixels, one bit each.
   HWY_INLINE unsigned shapes() const {
     const DI d;
     const auto is = [&](const std::int32_t* table) HWY_ATTR { return lookup_16(table, front_) != Zero(d); };
@@ -130,7 +132,7 @@ class PartOrder {
   HWY_INLINE void edge(const std::int32_t* part, CellParts::Edge& to) const {
     const DF df;
     const VI which = lookup_16(part, front_);
-    // If there is no edge, the value is certainly not positive.
+    // If a role has no edge, the value is certainly not positive.
     VF start = Set(df, -4.0f), x = Zero(df), y = x;
     edges_of<k, inner>(which, start, x, y, std::make_integer_sequence<int, 6>());
     Store(start, df, to.start + from_), Store(x, df, to.x + from_), Store(y, df, to.y + from_);
@@ -175,17 +177,18 @@ class PartOrder {
   CellParts& parts_;
 };
 
-/// Pixels that rays of a batch's cells may hit, encoded in one integer each: the cell, and column and row in the
-/// square, 16 bits apart as in CellParts. `uncertain` marks those close to an edge of the outline, where float does not
-/// decide.
+/// Encodes a pixel that the rays of a batch's cell may hit in one integer: the cell, and column and row in the square,
+/// 16 bits apart as in CellParts. `uncertain` marks a pixel so close to an edge of the outline that a float does not
+/// determine the sign.
 struct Hit {
   static constexpr int column_bit = 4, row_bit = column_bit + 16;
   static constexpr std::int32_t uncertain = 1 << 15;
 };
-/// Hits that wait to be crossed.
+/// Queue of hits whose crossings are still to be computed.
 struct HitQueue {
   static constexpr std::size_t worth_draining = 512;
-  static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;  ///< with those of one more cell
+  static constexpr std::size_t most =
+      worth_draining + SegmentWindows::most_pixels;  ///< includes the hits of one more cell
 
   std::size_t size = 0;
   alignas(64) std::int32_t hit[most + lanes];

@@ -16,37 +16,38 @@
 
 namespace tessera::projection {
 
-/// A vertex prepared for set-up, in half a cache line: values that cells share are divided and rounded once.
+/// A vertex prepared for set-up, in half a cache line. Values that cells share are divided and rounded only once.
 struct LatticeVertex {
-  double x, y;                 ///< pixel position
-  double inverse_w;            ///< perspective: 1 / depth, or 0 for a vertex not in front of the eye; otherwise 1
+  double x, y;       ///< pixel position
+  double inverse_w;  ///< perspective: 1 / depth, or 0 for a vertex that is not in front of the eye; orthographic: 1
   std::int32_t depth, scalar;  ///< in the lattice's steps; the scalar is only set for point data
 };
 static_assert(sizeof(LatticeVertex) == 32);
 
-/// Sets out[v] from vertices[v] and scalars[v]; `scalars` is empty for cell data.
+/// Sets out[v] from vertices[v] and scalars[v] for every vertex v; `scalars` is empty for cell data.
 void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
                            const scene::Lattice& lattice, bool perspective, std::span<LatticeVertex> out);
 
-/// The frame data that the lattice rasterizer reads.
+/// What the lattice rasterizer needs to know about a frame.
 struct LatticeView {
   ProjectedMesh projected;
-  std::span<const LatticeVertex> vertices;  ///< of all vertices of `projected`
+  std::span<const LatticeVertex> vertices;  ///< one per vertex of `projected`
   scene::Lattice lattice;
   bool perspective;
   DepthLimits depth_limits{};
-  std::span<const Step> steps{};           ///< of the transfer function
-  const CellsAtSteps* at_steps = nullptr;  ///< the cells that these steps make irregular; null: none
-  const MatterLight* light = nullptr;      ///< on matter, of point data; segments get a SegmentLight; null: not lit
-  const PixelSpace* space = nullptr;       ///< with light
+  std::span<const Step> steps{};           ///< steps of the transfer function
+  const CellsAtSteps* at_steps = nullptr;  ///< the cells that are irregular because of these steps; null: none
+  const MatterLight* light =
+      nullptr;  ///< lighting of the matter of point data: segments get a SegmentLight; null: no lighting
+  const PixelSpace* space = nullptr;  ///< only needed with `light`
 };
 
 /// Working memory of one thread.
 struct LatticeScratch {
-  SplitRasterizer<RaySegments> splitter;  ///< for irregular cells, in double precision
+  SplitRasterizer<RaySegments> splitter;  ///< rasterizes irregular cells, in double precision
 };
 
-/// Bit x of rows[y]: pixel (x, y) of the square still accepts segments.
+/// Bit x of rows[y] is set if pixel (x, y) of the square still accepts segments.
 using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 
 /// The pixels to rasterize: a rectangle in one square of 32 x 32 pixels aligned to multiples of 32, and which of its
@@ -63,51 +64,54 @@ struct MaskedRect {
   }
 };
 
-/// Part of a tile's list: the cells to rasterize, and the following ones, which are prefetched.
+/// A part of a tile's list: the cells to rasterize, and the cells that follow, which are prefetched.
 struct ListedCells {
   std::span<const TileEntry> cells, next;
 };
 
-/// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of a rectangle. Appends to
-/// `out`.
+/// The `planes` rasterizer on the integer lattice: rasterizes cells to ray segments for the pixels of a rectangle.
+/// Appends to `out`.
 ///
 /// Sixteen cells are set up at once, one cell per lane, in double precision. Two steps follow:
-///   1. Which pixels does each cell cover (lattice_cover-inl.h)? The edges of its outline determine this: four
-///      additions for a vector of pixels, in blocks of 4 x 4, 8 x 2 or 2 x 8 (AVX-512; otherwise of half or a quarter
-///      as many), with the shape that takes the fewest blocks. Cells of a few pixels (AVX-512, AVX2) are processed
+///   1. Which pixels does each cell cover (lattice_cover-inl.h)? The edges of the cell's outline determine this: four
+///      additions for a vector of pixels, in blocks of 4 x 4, 8 x 2 or 2 x 8 (AVX-512; otherwise half or a quarter as
+///      many pixels), with the shape that takes the fewest blocks. Cells of a few pixels (AVX-512, AVX2) are processed
 ///      together, one cell per lane. Less than half of the lanes are hits (in blocks, 43 % on cube 32, 40 % on cube
 ///      64). Hits are packed: cell, column and row in one integer each.
-///   2. Where do their rays pass (lattice_cross-inl.h)? One hit per lane. With AVX-512, sixteen hits may be of any of
-///      the sixteen cells, whose values are then one vector each, from which lanes take theirs by permuting; the same
-///      holds for eight hits of eight cells of a few pixels with AVX2. Otherwise, all hits of a vector are of one cell.
-/// (Both steps at once, a block of pixels with all its planes, took 97 instructions for the 6 hits of 16 pixels that
-/// cube 64 has on average, and not much less time before a cell's first block; now a block takes 29, and sixteen hits
-/// of small cells 138.)
+///   2. Where do the rays of the hits pass through the cell (lattice_cross-inl.h)? This is computed with one hit per
+///      lane. With AVX-512, sixteen hits may belong to any of the sixteen cells: a value of all cells is then one
+///      vector, from which lanes take the value of their cell by permuting. The same holds for eight hits of eight
+///      cells of a few pixels with AVX2. Otherwise, all hits of a vector belong to one cell.
+/// (When both steps were one, a block of pixels with all its planes, it took 97 instructions for the 6 hits of 16
+/// pixels that cube 64 has on average, and almost as much time before a cell's first block. Now a block takes 29
+/// instructions, and sixteen hits of small cells take 138.)
 ///
 /// Six edge functions E in float determine which pixels are hit, and through which faces. Seen from the eye, a cell has
-/// two front and two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner
-/// edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain (for a sum over n
-/// blocks, |E| > 2 + 3 n / 4). Hits that are not certain (30 in a million segments on cube 64) get the exact sign with
-/// the tie rule (edge_sign.hpp), so hits are those of rasterize_planes.
+/// two front and two back faces, or one and three. The silhouette's edges determine whether a pixel is hit; the inner
+/// edges (one or three) determine the face. Each E is scaled so that its rounding error is below 1: the sign is certain
+/// if |E| > 1 (for a sum over n blocks, if |E| > 2 + 3 n / 4). For hits that are not certain (30 in a million segments
+/// on cube 64), the exact sign with the tie rule (edge_sign.hpp) is computed, so the hits are those of
+/// rasterize_planes.
 ///
-/// Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. No
-/// rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient is rounded
-/// to an integer step per pixel: at most 16 steps of error within the square. Under perspective, the planes are those
-/// of 1/depth and its products; a quotient of two gives the difference from a vertex of the face, so precision is
-/// relative to the face. Measured on cube 64 (31 pixels per cell): docs/RESULTS.md.
+/// Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. Rounding
+/// does not depend on the block or lane, so neighbours compute the same bits for their common face. A gradient is
+/// rounded to an integer step per pixel, which causes an error of at most 16 steps within the square. Under
+/// perspective, the planes are those of 1/depth and its products; a quotient of two planes gives the difference from a
+/// vertex of the face, so precision is relative to the face. docs/RESULTS.md has measurements on cube 64 (31 pixels per
+/// cell).
 ///
-/// Irregular cells go through rasterize_planes: those that cross the eye plane or the clipping range, have a corner
-/// nearer than a 16th of another corner's distance from the eye, have a face edge-on to 2^-9 of a pixel (except faces
-/// of orthographic views that are certainly edge-on), or extend beyond 2^14 pixels; and those for which planes of
-/// integers and float quotients are not accurate enough: DepthLimits determines which are too thin, CellsAtSteps where
-/// steps of the transfer function are too near. Their depths differ from their neighbours' by a few steps, and none of
-/// their segments crosses a step.
+/// Irregular cells are rasterized by rasterize_planes. These are cells that cross the eye plane or the clipping range,
+/// have a corner nearer than a 16th of another corner's distance from the eye, have a face edge-on to 2^-9 of a pixel
+/// (except faces of orthographic views that are certainly edge-on), or extend beyond 2^14 pixels. Cells are also
+/// irregular if integer planes and float quotients are not accurate enough for them: DepthLimits determines which cells
+/// are too thin, CellsAtSteps which are too close to steps of the transfer function. The depths of irregular cells
+/// differ from their neighbours' by a few steps, and none of their segments crosses a step.
 ///
-/// Cells with only closed candidate pixels are skipped; single closed pixels still get segments.
+/// Cells whose candidate pixels are all closed are skipped; otherwise, closed pixels still get segments.
 void rasterize_lattice(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels,
                        LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts);
 
-/// Whether this processor's instruction set has lanes (SSE4 or better).
+/// Whether this processor has an instruction set with lanes (SSE4 or better).
 bool lattice_available();
 
 }  // namespace tessera::projection

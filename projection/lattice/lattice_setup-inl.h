@@ -49,9 +49,9 @@ using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
 constexpr int edge_faces[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
 constexpr int face_corners[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-/// Whether (a, b, c) has the orientation of (0, 1, 2), seen from outside the cell.
+/// Whether the corners (a, b, c) of the face have the orientation of (0, 1, 2), seen from outside the cell.
 constexpr bool face_outward[4] = {true, false, true, false};
-/// Whether E of the edge is positive inside its first face if that face's area, oriented outward, is positive.
+/// Whether E of the edge is positive inside the edge's first face if that face's area, oriented outward, is positive.
 constexpr bool edge_inward[6] = {true, false, true, true, false, true};
 
 /// Sixteen cells after set-up. Pixels are numbered from the square's corner; planes and edge functions are relative to
@@ -65,7 +65,7 @@ struct CellBatch {
   };
 
   int size;
-  unsigned irregular;  ///< bit t: left to the double-precision rasterizer
+  unsigned irregular;  ///< bit t: cell t is left to the double-precision rasterizer
   std::uint32_t tet[most];
   alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half-open ranges
   alignas(64) std::uint32_t bits[most];                             ///< front_faces(), edge_on(), flipped()
@@ -77,7 +77,8 @@ struct CellBatch {
   alignas(64) std::int32_t depth_c[4][most];
   alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
-  alignas(64) float scalar_low[most], scalar_high[most];  ///< of a cell's corners; only with surfaces
+  alignas(64) float scalar_low[most],
+      scalar_high[most];  ///< lowest and highest scalar of a cell's corners; only with surfaces
 
   static constexpr int front_bit = 0, edge_on_bit = 8, flipped_bit = 16;
   /// Bit f: face f is a front face. Undefined for an irregular cell.
@@ -88,7 +89,8 @@ struct CellBatch {
   [[nodiscard]] unsigned flipped(int t) const { return bits[t] >> flipped_bit & 63; }
 };
 
-/// Nearest integers modulo 2^32, for |v| < 2^51: in the sum with 1.5 * 2^52, the lowest bit has the value 1.
+/// Returns the nearest integers modulo 2^32, for |v| < 2^51: in the sum with 1.5 * 2^52, the lowest bit has the value
+/// 1.
 HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, DD>> wrapped(VD v) {
   const DD d;
   const hn::RebindToUnsigned<DD> du;
@@ -108,7 +110,7 @@ struct FaceShape {
   VD inverse_area;  ///< set by find_sides()
 };
 
-/// The face's plane through the given values at its corners.
+/// Returns the plane of the face on which the quantity has the given values at the corners.
 HWY_INLINE Plane plane_of(const FaceShape& face, VD at_a, VD at_b, VD at_c) {
   const VD to_b = at_b - at_a, to_c = at_c - at_a;
   Plane plane;
@@ -126,7 +128,7 @@ HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::Face
   StoreU(wrapped(plane.y), d, out.y[f] + from);
 }
 
-/// Depths outside of these bounds are, or may be, outside the clipping range.
+/// Depths outside of these bounds are outside the clipping range, or may be.
 struct DepthBounds {
   double near, far;  ///< steps
   explicit DepthBounds(const LatticeView& view) {
@@ -139,12 +141,14 @@ struct DepthBounds {
   }
 };
 
-/// Of cells that are deeper than DepthLimits::least_extent: those too thin for their rounding error (DepthLimits).
+/// Returns those cells, among the cells deeper than DepthLimits::least_extent, that are too thin for their rounding
+/// error (DepthLimits).
 template <bool perspective>
 HWY_NOINLINE MD rounded_visibly(const LatticeView& view, VD extent, VD volume, VD twice_area, VD w_product) {
   const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
   const DepthLimits& limits = view.depth_limits;
-  // The longest path through the cell: a third of it, times the area that the cell covers, is the volume.
+  // The longest path of a ray through the cell: a third of this path, times the area that the cell covers, is the
+  // volume.
   VD chord = Abs(volume) / (twice_area * number(0.5));
   if constexpr (perspective)  // `volume` is of inverse depths there
     chord = chord / (w_product * number(view.lattice.depth_unit));
@@ -158,14 +162,15 @@ HWY_NOINLINE MD rounded_visibly(const LatticeView& view, VD extent, VD volume, V
   return thin;
 }
 
-/// Whether the faces may be edge-on.
+/// Whether the face may be edge-on.
 HWY_INLINE MD thin_face(const FaceShape& face) {
   const VD span = Abs(face.x1) + Abs(face.y1) + (Abs(face.x2) + Abs(face.y2));
   return Abs(face.area) <= span * Set(DD(), 0x1p-9);
 }
 
-/// Whether a face is certainly edge-on: orthographic coordinates and their differences are exact, and the products in
-/// its area are zero or have the same factors, because two corners coincide or all are on a line along an axis.
+/// Whether a face is certainly edge-on. Orthographic coordinates and their differences are exact. The products in the
+/// area of a face that is certainly edge-on are zero or have the same factors, because two corners coincide or all
+/// corners are on a line along an axis.
 HWY_INLINE MD edge_on_for_certain(const FaceShape& face) {
   const auto both_zero = [](VD p, VD q) HWY_ATTR { return And(p == Zero(DD()), q == Zero(DD())); };
   return Or(
@@ -180,8 +185,8 @@ struct Sides {
   MD edge_on[4];  ///< faces that no ray passes: only thin faces of orthographic views
 };
 
-/// Finds the front faces, and sets the faces' inverse areas. `thin`: some face may be edge-on, which is rare; where
-/// this is not certain, the cell becomes irregular.
+/// Finds the front faces, and sets the faces' inverse areas. `thin`: some face may be edge-on, which is rare; if a face
+/// is not certainly edge-on then, the cell becomes irregular.
 template <bool perspective, bool thin>
 HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
   const VD zero = Zero(DD()), one = Set(DD(), 1);
@@ -201,8 +206,8 @@ HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
     sides.front[f] = Not(Xor(positive, upright));
   }
   if constexpr (thin) {
-    // Edge-on faces, which no ray passes, complete both sides: the first one counts as a front face, the others as back
-    // faces.
+    // Edge-on faces, which no ray passes, are added to the two sides: the first counts as a front face, the others as
+    // back faces.
     MD seen = none;
     for (int f = 0; f < 4; ++f) {
       const MD edge_on = sides.edge_on[f];
@@ -213,8 +218,8 @@ HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
   return sides;
 }
 
-/// `count` values: the first or the second two (`pair` 0 or 1) of the vertices first, first + 2, first + 4...
-/// Interleaved with those of the vertices between, each vertex is in its own lane.
+/// Loads `count` values: the first two or the second two values (`pair` 0 or 1) of the vertices first, first + 2, first
+/// + 4... When they are interleaved with those of the vertices in between, each vertex is in its own lane.
 template <std::size_t count, class Vertex>
 HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   if constexpr (count == 2) {
@@ -226,7 +231,7 @@ HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   }
 }
 
-/// A vector of cells' corners: pixel position relative to the square's centre, depth and scalar in steps, weight.
+/// The corners of a vector of cells: pixel position relative to the square's centre, depth and scalar in steps, weight.
 struct Corners {
   VD x[4], y[4], depth[4], scalar[4], weight[4];
   VD nearest, farthest;  ///< depths
@@ -274,8 +279,8 @@ HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span
     if constexpr (thin) add_bit(sides.edge_on[f], CellBatch::edge_on_bit + f);
   }
 
-  // Divided by a bound of the six rounding errors, from the largest start and the box; 2^-23 would suffice, the rest is
-  // margin.
+  // E is divided by a bound of the six rounding errors, computed from the largest start and the box. A factor of 2^-23
+  // would suffice; the rest is margin.
   VD start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
@@ -291,7 +296,7 @@ HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span
     const VD signed_scale = IfThenElse(flip, Neg(scale), scale);
     VD scaled = start[e] * signed_scale;
     if constexpr (thin) {
-      // An edge without sides is between two edge-on faces; it never decides.
+      // An edge without sides is between two edge-on faces, and never determines a hit.
       const MD without_sides = And(along_x[e] == zero, along_y[e] == zero);
       scaled = IfThenElse(without_sides, number(4), scaled);
     }
@@ -302,9 +307,9 @@ HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span
   StoreU(TruncateTo(du32, bits), du32, batch.bits + from);
 }
 
-/// Stores the candidate pixels within `rect`, which is relative to the square's corner: those with centres inside the
-/// bounding box, widened by far more than rounding. Returns width plus height of the boxes; cells too far away for
-/// set-up become irregular.
+/// Stores the candidate pixels within `rect`, which is relative to the square's corner: the pixels whose centres are
+/// inside the bounding box, which is widened by far more than rounding. Returns width plus height of the boxes. Cells
+/// that are too far away for set-up become irregular.
 HWY_INLINE VD set_up_box(const Corners& corners, const scene::PixelRect& rect, int from, MD& irregular,
                          CellBatch& batch) {
   const hn::Rebind<std::int32_t, DD> di32;
@@ -327,9 +332,9 @@ HWY_INLINE VD set_up_box(const Corners& corners, const scene::PixelRect& rect, i
   return x_high - x_low + (y_high - y_low);
 }
 
-/// Stores the faces' planes: depth and, for point data, scalar. Under perspective, a quantity q is not linear in the
-/// image, but the weight u (w of the face's nearest corner, divided by w) and u (q - q_c) are: the quotient of their
-/// planes is q - q_c.
+/// Stores the planes of the faces: depth and, for point data, scalar. Under perspective, a quantity q is not linear in
+/// the image, but the weight u (w of the face's nearest corner, divided by w) and u (q - q_c) are linear; the quotient
+/// of their planes is q - q_c.
 template <bool perspective>
 HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&faces)[4], bool per_cell, int from,
                               CellBatch& batch) {
@@ -369,7 +374,7 @@ HWY_INLINE void store_scalar_range(const Corners& corners, int from, CellBatch& 
   StoreU(DemoteTo(df, Max(Max(s[0], s[1]), Max(s[2], s[3]))), df, batch.scalar_high + from);
 }
 
-/// One vector of cells: the first is cell `from` of the batch. `rect` as in set_up_box().
+/// Sets up one vector of cells, beginning with cell `from` of the batch. `rect` as in set_up_box().
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const Corners& corners,
                              const scene::PixelRect& rect, int from, CellBatch& batch) {
@@ -429,8 +434,8 @@ HWY_INLINE void store_cell_scalars(const scene::Lattice& lattice, const double* 
   StoreU(DemoteTo(df, Round(scalar)), df, batch.cell_scalar + from);
 }
 
-/// Lists refer to cells all over the mesh: prefetches the corner indices of the batches that follow, and the vertices
-/// of the next one, while this batch is processed. `ahead` begins with the next batch.
+/// Prefetches data of later batches while this batch is processed, because lists refer to cells all over the mesh: the
+/// corner indices of the batches that follow, and the vertices of the next batch. `ahead` begins with the next batch.
 HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntry> ahead) {
   const std::span<const scene::Tet> tets = view.projected.mesh->tets();
   const scene::TetMeshView& mesh = view.projected.mesh->mesh();

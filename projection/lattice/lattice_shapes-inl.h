@@ -38,11 +38,11 @@ namespace HWY_NAMESPACE {
 
 constexpr int lanes = static_cast<int>(MaxLanes(DF()));
 
-/// The roles of edges and faces, by the set of front faces (bit f of the index).
+/// The roles of edges and faces. A table of these is indexed by the set of front faces (bit f: face f).
 struct Roles {
-  std::uint8_t valid;          ///< some pixel can be hit
-  std::uint8_t three;          ///< one face against three
-  std::uint8_t single_behind;  ///< the single face is the back face
+  std::uint8_t valid;          ///< whether some pixel can be hit
+  std::uint8_t three;          ///< whether the cell has one face against three
+  std::uint8_t single_behind;  ///< whether the single face is the back face
   std::uint8_t outline[4];     ///< edges between front and back (three: the fourth repeats the third)
   std::uint8_t inner[3];       ///< two and two: edge of the front, of the back faces. Three: 01, 02, 12 of the three
   std::uint8_t face[4];        ///< two and two: front 0, 1, back 0, 1; three: the single face, then 0, 1, 2
@@ -94,7 +94,7 @@ constexpr RoleTable make_role_table() {
 constexpr RoleTable role_table = make_role_table();
 
 /// Replaces the uncertain edge functions of the batch's cell t at a pixel by +-2, with the sign of exact arithmetic and
-/// the tie rule. Returns whether the ray meets an edge of the outline between two faces that it passes: its distance
+/// the tie rule. Returns whether the ray meets an edge of the outline between the two faces that it passes: its length
 /// inside the cell is then zero, which rounded planes might not show.
 inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t, const glm::dvec2& pixel,
                          float (&edges)[6], RasterCounts& counts) {

@@ -8,26 +8,27 @@
 
 namespace tessera::projection {
 
-/// The iso-surfaces of a batch of cells on the lattice: computed from the cells by lattice_normals-inl.h, and used by
-/// lattice_crossed-inl.h and lattice_cut-inl.h for the segments that the rasterizer has appended.
+/// The iso-surfaces of a batch of cells on the lattice. lattice_normals-inl.h computes them from the cells;
+/// lattice_crossed-inl.h and lattice_cut-inl.h use them for the segments that the rasterizer has appended.
 ///
-/// A segment's scalars have the bits of its neighbour's on their common face, and the surfaces' values are rounded in
-/// the same way as those of vertices: so a ray crosses a surface in a face once. Where rounding could be visible,
-/// because a surface almost coincides with a face, CellsAtSteps has both of the face's cells rasterized in double
-/// precision, so they are not handled here.
+/// On a common face, the scalars of a segment and of its neighbour have the same bits, and the surfaces' values are
+/// rounded in the same way as those of vertices. So a ray crosses a surface in a face exactly once. If rounding could
+/// be visible because a surface almost coincides with a face, CellsAtSteps makes both cells of the face irregular. They
+/// are rasterized in double precision and not handled here.
 struct LatticeSurfaces {
   static constexpr std::size_t most_cells = 16;
-  /// Elements behind the last one of an array, which vectors of lanes may overwrite.
+  /// Elements after the last element of an array that vectors of lanes may overwrite.
   static constexpr std::size_t padding = SegmentStream::padding;
 
-  /// The values on the lattice between which a cell's surfaces are; for a cell without surfaces, a range that no
+  /// The range of the values, on the lattice, of a cell's surfaces; for a cell without surfaces, a range that no
   /// segment can reach.
   alignas(64) float low[most_cells], high[most_cells];
-  alignas(64) std::int32_t first[most_cells], count[most_cells];  ///< these, as indices of SurfaceSet::on_lattice()
-  // Only for cells with crossed segments.
-  alignas(64) double normal[3][most_cells];     ///< unit normal of the field; zero: none
+  alignas(64) std::int32_t first[most_cells],
+      count[most_cells];  ///< the cell's surfaces, as indices of SurfaceSet::on_lattice()
+  // The following are only set for cells with crossed segments.
+  alignas(64) double normal[3][most_cells];     ///< unit normal of the field; zero: there is no normal
   alignas(64) double least_cosine[most_cells];  ///< 1 without a normal, otherwise 0
-  /// Orthographic: LatticeMark::cosine_code() of the normal and all rays.
+  /// Orthographic: LatticeMark::cosine_code() for the normal and all rays.
   alignas(64) std::int32_t cosine_code[most_cells];
 
   /// Returns memory for the indices of `segments` segments, and the padding.

@@ -15,8 +15,8 @@ struct LinearMap {
   bool perspective;
 };
 
-/// Projects as many points from the front as fill whole vectors, with the same bits as PixelSpace::project; returns
-/// their number.
+/// Projects points from the beginning of `p_world`, as many as fill whole vectors, with the same bits as
+/// PixelSpace::project. Returns the number of projected points.
 std::size_t project_lanes(const LinearMap& map, std::span<const glm::dvec3> p_world, std::span<PixelVertex> out);
 
 }  // namespace tessera::projection

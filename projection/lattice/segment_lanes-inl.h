@@ -37,7 +37,7 @@ struct SegmentLanes {
   VF scalar_front, scalar_back;
 };
 
-/// Appends the segments of the lanes of `hit`: packed in registers and stored as whole vectors.
+/// Appends the segments of those lanes that are set in `hit`. They are packed in registers and stored as whole vectors.
 HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentStream& out) {
   const DI d;
   const DF df;
@@ -50,14 +50,15 @@ HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentSt
   out.size += pack.count();
 }
 
-/// Appends to SegmentStream::own and white in the same way; to be called before append() of the lanes' segments.
+/// Appends to SegmentStream::own and white in the same way; must be called before append() is called for these
+/// segments.
 HWY_INLINE void append_light(MF hit, VF own, VF white, SegmentStream& out) {
   const LanePacker pack(RebindMask(DI(), hit));
   StoreU(pack(own), DF(), out.own.data() + out.size);
   StoreU(pack(white), DF(), out.white.data() + out.size);
 }
 
-/// Appends to SegmentStream::hit in the same way; to be called before append() of the lanes' segments.
+/// Appends to SegmentStream::hit in the same way; must be called before append() is called for these segments.
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
   const DI d;
   const LanePacker pack(RebindMask(d, hit));

@@ -12,7 +12,7 @@ namespace tessera::projection {
 /// A ray segment in the format of Juliachs et al. 2007 (4.1): four floats.
 struct SegmentTuple {
   float z_back;  ///< eye depth where the ray leaves the cell, world units
-  float length;  ///< divided by the longest edge of the data set, so 0 to 1
+  float length;  ///< divided by the longest edge of the data set, so between 0 and 1
   float scalar_front, scalar_back;
   bool operator==(const SegmentTuple&) const = default;
 };
@@ -24,17 +24,17 @@ struct SegmentDepths {
 };
 SegmentDepths depths_of(float z_back, float length, float longest_edge);
 
-/// The tuple of segment i from a rasterize_scanline() with this longest edge: exactly the four floats that it computed.
-/// (Front and back determine them because a length is a difference of two float depths, which is zero or at least 2^-25
-/// of the depth, while double rounds by 2^-53.)
+/// Returns the tuple of segment i from a rasterize_scanline() with this longest edge: exactly the four floats that it
+/// computed. (Front and back determine these floats because a length is a difference of two float depths, which is zero
+/// or at least 2^-25 of the depth, while double rounds by 2^-53.)
 SegmentTuple to_tuple(const RaySegments& segments, std::size_t i, float longest_edge);
 
-/// Writes the tuple as segment i, which must exist: the inverse of to_tuple().
+/// Writes the tuple as segment i, which must exist. This is the inverse of to_tuple().
 void from_tuple(const SegmentTuple& tuple, std::uint32_t pixel, std::uint32_t tet, float longest_edge,
                 RaySegments& segments, std::size_t i);
 
-/// The longest edge of all tets, rounded to float; 1 if all are zero. For several meshes that are parts of one data
-/// set, use the largest. Work runs in the caller's task arena (oneTBB).
+/// Returns the longest edge of all tets, rounded to float; 1 if all edges have length zero. For several meshes that are
+/// parts of one data set, use the largest of their longest edges. Runs in the caller's task arena (oneTBB).
 float longest_edge(const scene::TetMeshView& mesh);
 
 }  // namespace tessera::projection
