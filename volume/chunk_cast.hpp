@@ -16,14 +16,15 @@ namespace tessera::volume {
 
 class Renderer;
 
-/// One frame of a volume, chunk by chunk: the state of the rays persists between chunks, and a sink receives their
-/// light. For callers that have, or want, only a part of the volume at a time:
+/// Casts one frame of a volume, chunk by chunk: the state of the rays persists between chunks, and a sink receives the
+/// light of the rays. For callers that have, or want, only a part of the volume at a time:
 ///
 ///   early termination   continue while any_open()
-///   occlusion           close() rays that other objects hide, between chunks
-///   sort-last           advance() through the process's chunks, emit() the fragments for compositing front to back
-///                       (a process that has one box casts it in one call: CastRequest::part)
-///   shadows             a camera at the light; transmittance() after each chunk is the light that reaches the next
+///   occlusion           between chunks, close() rays that other objects hide
+///   sort-last           advance() through the process's chunks, then emit() the fragments for compositing front to
+///                       back (a process that has one box casts it in one call: CastRequest::part)
+///   shadows             use a camera at the light; transmittance() after each chunk is the light that reaches the next
+///                       chunk
 ///
 ///     ChunkCast cast(renderer, camera, size, function);
 ///     for (const VoxelBox& chunk : boxes_front_to_back(geometry, {32, 32, 32}, camera)) cast.advance(chunk);
@@ -38,23 +39,23 @@ class Renderer;
 ///           that begin at multiples of 32 voxels, counted along the rays' main axis from where they enter (regular
 ///           grids). Other chunks, and composited fragments, give the same image up to rounding: 1e-6, and 1e-5 with
 ///           steps through narrow peaks of the transfer function.
-/// Error     That of the integrator. When a fragment is emitted whose light in float lanes is uncertain, its part of
-///           the ray is cast again in double precision.
+/// Error     The error is that of the integrator. When a fragment is emitted whose light in float lanes is uncertain,
+///           its part of the ray is cast again in double precision.
 /// Threads   advance() and emit() use the threads of the renderer's settings. Only one call may run at a time, and none
 ///           while the renderer renders.
 /// Memory    150 bytes per pixel of the region, twice that in tiles whose rays differ in their main axis.
 class ChunkCast {
  public:
-  /// The rays of a whole image, or of a region of it. The renderer must outlive the cast. Throws Error(bad_input) for
-  /// an invalid camera or size.
+  /// Casts the rays of a whole image, or of a region of the image. The renderer must outlive the cast. Throws
+  /// Error(bad_input) for an invalid camera or size.
   ChunkCast(Renderer& renderer, const scene::Camera& camera, scene::ImageSize size,
             const scene::TransferFunction& function, std::optional<scene::PixelRect> region = std::nullopt);
   ~ChunkCast();
   ChunkCast(const ChunkCast&) = delete;
   ChunkCast& operator=(const ChunkCast&) = delete;
 
-  /// Casts every open ray through its voxels of `chunk`. Reads only bricks of the chunk (rectilinear: blocks of 16^3
-  /// voxels). Throws scene::FrameStopped after a request on `stop`; the cast cannot be continued then. Throws
+  /// Casts every open ray through its voxels of `chunk`. Reads only bricks of the chunk (rectilinear grids: blocks of
+  /// 16^3 voxels). Throws scene::FrameStopped after a request on `stop`; the cast cannot be continued then. Throws
   /// Error(bad_input) for a chunk that is empty or not inside the volume.
   void advance(const VoxelBox& chunk, const std::stop_token& stop = {});
 
@@ -62,9 +63,9 @@ class ChunkCast {
   /// and has not been closed.
   [[nodiscard]] bool open(int x, int y) const;
   [[nodiscard]] bool any_open() const;
-  /// Transmittance of the cast part of a pixel's ray: 1 where it met nothing.
+  /// Transmittance of the part of a pixel's ray that has been cast: 1 if it met nothing.
   [[nodiscard]] float transmittance(int x, int y) const;
-  /// Ends the ray of a pixel; its accumulated light is kept.
+  /// Ends the ray of a pixel; the light that it has accumulated is kept.
   void close(int x, int y);
 
   /// Passes the light accumulated since the last emit() to `sink`: a fragment for each ray that met a chunk since then.

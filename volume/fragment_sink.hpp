@@ -7,20 +7,21 @@
 
 namespace tessera::volume {
 
-/// The light of one ray between two positions, as if nothing were in front of or behind them.
+/// The light of one ray between two positions, as if no matter were in front of or behind them.
 ///
 /// Units     red, green, blue: linear light, premultiplied by opacity; alpha: opacity. Rounding may make them negative
 ///           by 1e-7, or alpha larger than one by as much. Depths are planar, in world units.
 /// Order     Fragments of one pixel do not overlap; `front over back` composites them.
 struct RayFragment {
   int x, y;       ///< pixel
-  float z_front;  ///< depth at which its light begins: NaN if it has none
-  float z_back;   ///< depth at which its part of the ray ends
+  float z_front;  ///< depth at which the light begins; NaN if the fragment has no light
+  float z_back;   ///< depth at which the ray's part ends
   float red, green, blue, alpha;
   float error_bound;  ///< error recorded by float lanes (lane_error_bound.hpp), otherwise 0
 };
 
-/// Receives the light of rays: an image, a compositor, a message to another process, a light's view.
+/// Receives the light of rays. Implementations are an image, a compositor, a message to another process, or a light's
+/// view.
 ///
 /// Threads   take() and finished() are called by several threads concurrently, for different pixels.
 /// Errors    Exceptions thrown here end the cast and propagate out of it.
@@ -31,10 +32,10 @@ class FragmentSink {
   FragmentSink(const FragmentSink&) = delete;
   FragmentSink& operator=(const FragmentSink&) = delete;
 
-  /// At most one fragment per pixel, and none for rays that did not meet the cast part. The span is invalid after the
-  /// call.
+  /// Receives at most one fragment per pixel, and none for rays that did not meet the part of the volume that is cast.
+  /// The span is invalid after the call.
   virtual void take(std::span<const RayFragment> fragments) = 0;
-  /// All fragments of these pixels have been passed to take().
+  /// Called when all fragments of these pixels have been passed to take().
   virtual void finished(const scene::PixelRect& /*pixels*/) {}
 };
 

@@ -20,15 +20,15 @@ struct FrameWork {
   std::vector<TileTime> tiles;  ///< excluding the rays that were cast again
 };
 
-/// Casts the rays of the `wanted` pixels through `part` of the volume in one pass, tile by tile; no two of these
-/// rectangles may share a tile. `sink` receives one fragment for every ray that meets the part; those of uncertain rays
-/// follow after `in_double` has cast them again. Throws scene::FrameStopped within a tile of rays after a request on
-/// `stop`. Uses the calling thread's arena.
+/// Casts the rays of the `wanted` pixels through `part` of the volume in one pass, tile by tile; no two of the `wanted`
+/// rectangles may share a tile. `sink` receives one fragment for every ray that meets the part; fragments of uncertain
+/// rays follow after `in_double` has cast these rays again. After a request on `stop`, throws scene::FrameStopped
+/// within a tile of rays. Uses the calling thread's arena.
 FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
                      FragmentSink& sink, VoxelCaster& in_double, const std::stop_token& stop);
 
-/// A pilot pass (FrameView::tally) through the tiles of `pixels` that PilotPass selects. Stop requests and threads as
-/// in cast_frame().
+/// Casts a pilot pass (FrameView::tally) through the tiles of `pixels` that PilotPass selects. `stop` and threads work
+/// as in cast_frame().
 void cast_pilot(const FrameSetup& setup, const scene::PixelRect& pixels, const PilotPass& pass,
                 const std::stop_token& stop);
 

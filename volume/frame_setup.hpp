@@ -12,21 +12,22 @@
 
 namespace tessera::volume {
 
-/// The data that the tiles of one frame of a regular grid share, set up once per frame; view() refers to it.
+/// The data that the tiles of one frame of a regular grid share. They are computed once per frame; view() refers to
+/// them.
 class FrameSetup {
  public:
-  /// Camera and size must be valid. `tally`: for a pilot pass; null for an image. Uses the calling thread's arena.
-  /// `state` and `tally` must outlive it.
+  /// Camera and size must be valid. `tally` is set for a pilot pass, and null for an image. `state` and `tally` must
+  /// outlive this object. Uses the calling thread's arena.
   FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
              const scene::TransferFunction& function, WorkTally* tally);
   FrameSetup(const FrameSetup&) = delete;
   FrameSetup& operator=(const FrameSetup&) = delete;
 
   [[nodiscard]] const FrameView& view() const { return view_; }
-  /// By cell of 8^3 voxels, and by brick: whether any of it is visible.
+  /// One byte per cell of 8^3 voxels, and one per brick: whether any part of it is visible.
   [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
   [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
-  /// Time taken to compute them, in microseconds.
+  /// Time that computing the visibility took, in microseconds.
   [[nodiscard]] std::uint64_t cull_us() const { return cull_us_; }
   [[nodiscard]] const GridSurfaces* surfaces() const { return &surfaces_; }
 

@@ -43,14 +43,16 @@ struct PixelRays {
             std::span<const scene::HalfSpace> clip = {});
 };
 
-/// Light and material for the kernels. Gradients are per voxel along the grid's axes; with W the linear part of the map
-/// from world to index space times `unit`, a world gradient is W^T g.
+/// Light and material for the kernels. Gradients are per voxel along the grid's axes. With W the linear part of the map
+/// from world to index space times `unit`, the world gradient of a gradient g is W^T g.
 struct ShadingView {
   float ambient, diffuse, specular, shininess;
   float metric[3][3];     ///< W W^T, for squared lengths of world gradients
   float light[3];         ///< W l, where l is the unit vector towards the light, for dot products with it
-  float light_per_noise;  ///< bound of the change of light with a gradient's components, times the gradient's length
-  double unit;          ///< length unit of world gradients, in world units: a voxel's side, so that squares fit a float
+  float light_per_noise;  ///< upper bound of the change of light with a gradient's components, times the gradient's
+                          ///< length
+  double unit;  ///< length unit of world gradients, in world units: the side of a voxel, so that squares are in the
+                ///< range of a float
   double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
 };
 
@@ -59,28 +61,28 @@ struct FrameView {
   const PixelRays* rays;
   const integrals::LaneTable* table;
   const CellRanges* ranges;
-  LaneSamples lanes;                  ///< `ranges->lanes`, but without rounding to integers where fractions are needed
-  bool has_rest = false;              ///< gradients are needed, and lanes round the samples
-  float rest_noise = 0;               ///< then: rounding error of a gradient's components, in lane units
-  const std::uint8_t* visible;        ///< by cell of `ranges`
+  LaneSamples lanes;                  ///< `ranges->lanes`, but not rounded to integers where fractions are needed
+  bool has_rest = false;              ///< whether gradients are needed and lanes round the samples
+  float rest_noise = 0;               ///< if `has_rest`: rounding error of a gradient's components, in lane units
+  const std::uint8_t* visible;        ///< one byte per cell of `ranges`: whether it is visible
   bool some_hidden;                   ///< whether any cell is not visible
   bool some_clear;                    ///< whether the transfer function is invisible at some value in the volume
-  const std::uint8_t* brick_visible;  ///< by brick: whether it has voxels of a visible cell
+  const std::uint8_t* brick_visible;  ///< one byte per brick: whether it has voxels of a visible cell
   BrickCache* bricks;
   scene::GridIndex voxels, samples;
   bool cell_data;
-  double length_unit;         ///< of the table, in world units
+  double length_unit;         ///< length unit of the table, in world units
   float least_transmittance;  ///< a ray with less transmittance ends
   float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
   float largest_color;
   const LaneErrorBound* error_bound = nullptr;  ///< null: errors are negligible
   float error_tolerance = 0;                    ///< a ray with a larger error bound is cast again
-  double step = 0;                              ///< sampled, preintegrated: length in the table's unit; otherwise 0
-  const PreintegratedTable* preintegrated = nullptr;  ///< null: not preintegrated
+  double step = 0;  ///< sampled, preintegrated: length of a step in the table's unit; otherwise 0
+  const PreintegratedTable* preintegrated = nullptr;  ///< null: the integrator is not preintegrated
   const ShadingView* shading = nullptr;               ///< null: no shading
   const SurfaceView* surfaces = nullptr;              ///< null: no surfaces
-  WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts the work by position
-  int pilot_packets = 0;                              ///< number cast in each tile
+  WorkTally* tally = nullptr;  ///< not null: this is a pilot pass, which counts the work by position
+  int pilot_packets = 0;       ///< number of packets that a pilot pass casts in each tile
   scene::Trace* trace;
 };
 

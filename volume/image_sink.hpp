@@ -7,12 +7,12 @@
 
 namespace tessera::volume {
 
-/// Writes fragments, each the whole light of its pixel, into an image: colours of at least 0, opacity in [0, 1], and
-/// the depth where light begins. Pixels without a fragment are not changed.
+/// Writes fragments into an image; each fragment must be the whole light of its pixel. Colours are limited to at least
+/// 0 and the opacity to [0, 1]; the depth is where light begins. Pixels without a fragment are not changed.
 class ImageSink final : public FragmentSink {
  public:
-  /// `error_bounds`, unless null, receives the fragments' error bounds by pixel index. `watch` is notified of finished
-  /// pixels. All must outlive the sink.
+  /// `error_bounds` may be null; otherwise it receives the fragments' error bounds by pixel index. `watch` is notified
+  /// of finished pixels. All arguments must outlive the sink.
   ImageSink(scene::Image& image, float* error_bounds, scene::FrameWatch& watch)
       : image_(image), error_bounds_(error_bounds), watch_(watch) {}
 

@@ -24,11 +24,12 @@
 
 namespace tessera::volume {
 
-/// A session's settings, and those that differ between its processes and data sets. `memory_bytes` is the budget for
-/// bricks in memory.
+/// The settings of a session, together with those that differ between its processes and data sets. `memory_bytes` is
+/// the budget for bricks in memory.
 struct RenderSettings : Settings {
   std::vector<scene::HalfSpace> clip{};  ///< half-spaces to which rays are clipped (tessera/selection.hpp)
-  int parts = 1;  ///< processes that each cast a part of a ray; together they have the requested accuracy
+  /// Number of processes that each cast a part of a ray; all parts together have the requested accuracy.
+  int parts = 1;
 };
 
 /// Whether rays are sampled in steps of GridSettings::step; otherwise they go from voxel to voxel.
@@ -38,7 +39,7 @@ inline bool in_steps(IntegratorKind kind) {
 
 /// Statistics of one frame.
 struct RenderStatistics : GridCounters {
-  std::string instruction_set;  ///< of the kernels that ran
+  std::string instruction_set;  ///< instruction set of the kernels that ran
 };
 
 /// Regions whose bounds are multiples of this many pixels share no work with neighbouring regions.
@@ -61,13 +62,14 @@ struct Frame {
   scene::Image image;  ///< empty outside the regions
   RenderStatistics statistics;
   /// If requested: for each pixel, the recorded error bound of float lanes in linear RGBA (lane_error_bound.hpp).
-  /// Pixels above half the requested accuracy, divided by the number of parts, were cast again in double precision.
-  /// Zero where no ray was cast, and for rectilinear grids.
+  /// Pixels whose bound was above half the requested accuracy, divided by the number of parts, were cast again in
+  /// double precision. Zero where no ray was cast, and for rectilinear grids.
   std::vector<float> error_bounds;
   std::vector<TileTime> tile_times;  ///< if requested; empty for rectilinear grids
 };
 
-/// A pilot pass casts one in `turns` tiles of a region (default: the image), a different one for each `number`.
+/// A pilot pass casts one of every `turns` tiles of a region (default: the image); different values of `number` select
+/// different tiles.
 struct PilotPass {
   std::optional<scene::PixelRect> region{};
   std::size_t number = 0, turns = 1;
@@ -90,7 +92,7 @@ class Renderer {
   /// The settings must be valid for grids (tessera::validate) and for this grid: no integrators with steps for
   /// rectilinear grids, iso-surfaces for point data only. `ranges` must have been computed from the same source.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges);
-  /// The same with shared ranges.
+  /// Uses ranges that are shared with other objects.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, std::shared_ptr<const CellRanges> ranges);
   /// Reads all samples once to compute their ranges.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings);
@@ -98,13 +100,14 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws Error(bad_input) for an invalid camera or size, and Error(system_failure) if the budget cannot hold the
-  /// bricks that the threads need at the same time. `watch` is called with finished tiles of the regions. After a stop
-  /// request render() throws scene::FrameStopped within a tile of rays; it can be called again afterwards.
+  /// Renders a frame. Throws Error(bad_input) for an invalid camera or size, and Error(system_failure) if the budget
+  /// cannot hold the bricks that the threads need at the same time. `watch` is called with finished tiles of the
+  /// regions. After a stop request, render() throws scene::FrameStopped within a tile of rays; it can be called again
+  /// afterwards.
   Frame render(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                const CastRequest& request = {}, scene::FrameWatch* watch = nullptr);
 
-  /// The pilot pass: casts every 32nd ray of the image (more of small images), and counts the work by position in the
+  /// Casts a pilot pass: every 32nd ray of the image (more rays of small images). Counts the work by position in the
   /// volume (learned_work.hpp) without producing light. Otherwise like render().
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                    WorkTally& tally, const PilotPass& pass = {}, scene::FrameWatch* watch = nullptr);

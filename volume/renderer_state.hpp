@@ -23,9 +23,9 @@
 
 namespace tessera::volume {
 
-/// World units: the side of a cube with the mean volume of a voxel.
+/// Returns, in world units, the side of a cube with the mean volume of a voxel.
 double voxel_side_of(const scene::GridGeometry& geometry);
-/// World units: a power of two near the mean voxel's side.
+/// Returns, in world units, a power of two near the mean voxel's side.
 double length_unit_of(double voxel_side);
 
 inline std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
@@ -56,7 +56,7 @@ struct RendererState {
             in_steps(settings.integrator.kind) ? integrals::StepRounding::nearest : integrals::StepRounding::up};
   }
 
-  /// A ray with less transmittance ends.
+  /// A ray ends when its transmittance is less than this.
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
     if (in_steps(settings.integrator.kind)) return 1e-6f;
@@ -87,7 +87,7 @@ struct RendererState {
     return settings.integrator.kind == IntegratorKind::exact ? scene::error_budget::casting_of_exact_grid
                                                              : settings.integrator.accuracy;
   }
-  /// Whether float lanes are accurate enough for such a function.
+  /// Whether float lanes are accurate enough for this function.
   [[nodiscard]] bool lanes_suffice(const scene::TransferFunction& function) const {
     const scene::Box box = scene::bounds(source.geometry());
     const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
@@ -98,7 +98,7 @@ struct RendererState {
                      settings.integrator.accuracy;
   }
 
-  /// By cell: the cells that a cast of a whole frame in double precision has to traverse.
+  /// One byte per cell: marks the cells that a cast of a whole frame in double precision has to traverse.
   [[nodiscard]] std::vector<std::uint8_t> visible_to_walks(const integrals::LaneTable& table) const {
     std::vector<std::uint8_t> visible = visible_cells(ranges, table);
     show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
@@ -112,7 +112,7 @@ struct RendererState {
   const CellRanges& ranges;
   BrickCache bricks;
   std::optional<LookAhead> look_ahead;  ///< only for the proximity policy and regular grids
-  BrickCache::Counts counts_before;     ///< at the end of the last frame; later preloads count for the next frame
+  BrickCache::Counts counts_before;  ///< counts at the end of the last frame; later preloads count for the next frame
 };
 
 }  // namespace tessera::volume

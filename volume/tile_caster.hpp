@@ -11,7 +11,7 @@
 
 namespace tessera::volume {
 
-/// One thread's buffers for casting a tile through a chunk.
+/// The buffers of one thread for casting a tile through a chunk.
 struct TileMemory {
   SlabBlock block;
   std::vector<float> row;

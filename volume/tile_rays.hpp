@@ -19,22 +19,22 @@ struct TileRays {
   static constexpr int packet_rays = packet_side * packet_side, packets = side * side / packet_rays;
   static constexpr int count = side * side;
 
-  // Constant during the frame.
+  // The following are constant during the frame.
   alignas(64) double ax[count], bx[count], ay[count], by[count];
-  alignas(64) double k_in[count], k_out[count];       ///< the part in the volume and in view
+  alignas(64) double k_in[count], k_out[count];       ///< the part of the ray that is in the volume and in view
   alignas(64) double depth_0[count], depth_k[count];  ///< planar depth = depth_0 + depth_k * k, world units
   alignas(64) float length_k[count];                  ///< length of the ray per unit of k, in the table's unit
   alignas(64) float light_view[count];                ///< shading: cosine between the light and the view
-  // Progress of the rays.
+  // The progress of the rays:
   alignas(64) double from[count], to[count];        ///< the part of [k_in, k_out] to be cast in the current chunk
   alignas(64) double begun[count], reached[count];  ///< first k cast since clear_light(), and last k cast
-  // The light between them, and the k at which it begins; NaN if there is none.
+  // The light between `begun` and `reached`, and the k at which it begins; NaN if there is no light.
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];
-  alignas(64) float error_bound[count];    ///< errors in linear RGBA that add up (lane_error_bound.hpp)
+  alignas(64) float error_bound[count];    ///< errors in linear RGBA that add up linearly (lane_error_bound.hpp)
   alignas(64) float rough[count];          ///< sum of squares of independent rounding errors
   alignas(64) float carried[count];        ///< preintegrated: the field at the end of the last step
-  alignas(64) float passed[count];         ///< transmittance of the parts whose light has been emitted before
+  alignas(64) float passed[count];         ///< transmittance of the parts whose light has been emitted already
   alignas(64) std::uint8_t closed[count];  ///< 1: the caller has ended the ray
 
   /// Resets the light and where it begins.

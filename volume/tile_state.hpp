@@ -21,32 +21,32 @@ namespace tessera::volume {
 /// for chunks from front to back. Between calls, rays can be queried and closed. fragments() returns the accumulated
 /// light. Only one thread may use a tile at a time.
 ///
-/// Axes      Rays of one tile may have several main axes (TileRays): there is a TileRays for each, and every ray is in
-///           one of them.
-/// Memory    150 KB for each of these, usually one. begin() reuses it.
+/// Axes      Rays of one tile may have several main axes (TileRays): there is a TileRays for each axis code, and every
+///           ray is in one of them.
+/// Memory    150 KB for each TileRays; usually there is one. begin() reuses the memory.
 class TileState {
  public:
-  /// The tile whose first pixel is (x0, y0), multiples of 32; only its pixels in `region` are cast. A pilot pass
-  /// (FrameView::tally) casts a few packets.
+  /// Starts the tile whose first pixel is (x0, y0), which are multiples of 32; only its pixels in `region` are cast. A
+  /// pilot pass (FrameView::tally) casts a few packets.
   void begin(const FrameView& frame, int x0, int y0, const scene::PixelRect& region, TileCounts& counts);
 
-  /// Sets TileRays::from and to of the rays of one axis code to their parts in a chunk. Returns false if no ray has
-  /// one.
+  /// Sets TileRays::from and to of the rays of one axis code to the parts of the rays in a chunk. Returns false if no
+  /// ray has a part in the chunk.
   bool enter(const FrameView& frame, const VoxelBox& chunk, int code);
 
   /// Whether light may still be added to the ray of a pixel: it has not left the volume, is not opaque and has not been
   /// closed.
   [[nodiscard]] bool open(const FrameView& frame, int x, int y) const;
   [[nodiscard]] bool any_open(const FrameView& frame) const;
-  /// Transmittance of the cast part of a pixel's ray.
+  /// Transmittance of the part of a pixel's ray that has been cast.
   [[nodiscard]] float transmittance(int x, int y) const;
-  /// Ends this pixel's ray; its accumulated light is kept.
+  /// Ends this pixel's ray; the light that it has accumulated is kept.
   void close(int x, int y);
 
-  /// Appends the light of the rays since begin() or restart() to `certain`, in the order of pixels, and the rays whose
-  /// light in float lanes is uncertain to `uncertain`.
+  /// Appends the light of the rays since begin() or restart() to `certain`, in the order of pixels. Rays whose light in
+  /// float lanes is uncertain are appended to `uncertain`.
   void fragments(const FrameView& frame, std::vector<RayFragment>& certain, std::vector<UncertainRay>& uncertain) const;
-  /// Continues the rays without light: the light that follows is a fragment of its own.
+  /// Continues the rays without light: the light that follows will be a separate fragment.
   void restart();
 
   [[nodiscard]] unsigned codes() const { return codes_; }

@@ -29,8 +29,8 @@ class BrickCache {
  public:
   struct Counts {
     std::uint64_t hits = 0, loads = 0, evictions = 0, bytes_loaded = 0, bytes = 0, peak_bytes = 0;
-    std::uint64_t preloads = 0;               ///< loaded ahead of their use, not included in `loads`
-    std::uint64_t load_ns = 0, evict_ns = 0;  ///< acquire() only: reading, and making room
+    std::uint64_t preloads = 0;               ///< bricks loaded ahead of their use; not included in `loads`
+    std::uint64_t load_ns = 0, evict_ns = 0;  ///< time of acquire() only: for reading, and for making room
   };
   enum class Ahead { loaded, was_there, no_room };
 
@@ -38,26 +38,27 @@ class BrickCache {
   BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
              CachePolicy policy);
 
-  /// A brick's samples, valid until release(). Throws what the source's read() throws.
+  /// Returns a brick's samples, which are valid until release(). Throws what the source's read() throws.
   const std::byte* acquire(std::size_t brick, scene::Trace* trace);
   void release(std::size_t brick);
 
-  /// proximity: distances by brick number, which determine evictions, the largest first. A brick no farther than
-  /// `in_use` may be needed at any time, and is not evicted for preloading.
+  /// For CachePolicy::proximity: sets the distance of each brick, by number. Bricks with the largest distance are
+  /// evicted first. A brick at most `in_use` away may be needed at any time, and is not evicted for preloading.
   void set_distances(std::vector<float> distances, float in_use = 0);
 
-  /// proximity: loads a brick that has not been requested yet, unless this would evict one that is not farther, or one
-  /// in use; with `evicts` false, unless it would evict any. On any thread. Waits while acquire() reads on other
-  /// threads, which have priority. Throws as acquire() does.
+  /// For CachePolicy::proximity: loads a brick that has not been requested yet. It is not loaded if this would evict a
+  /// brick that is not farther, or one in use; with `evicts` false, if this would evict any brick. May be called on any
+  /// thread. Waits while acquire() reads on other threads, which have priority. Throws like acquire().
   Ahead preload(std::size_t brick, bool evicts, scene::Trace* trace);
 
   /// Bytes of the samples of a brick.
   static std::uint64_t bytes_of(const BrickLayout& layout, std::size_t brick, scene::SampleType type);
-  /// Bytes of the table of all bricks, loaded or not, their distances, and their visibility in a frame.
+  /// Bytes of the table of all bricks (loaded or not), including their distances, and their visibility in a frame.
   static std::uint64_t bytes_of_table(const BrickLayout& layout) {
     return layout.count() * (sizeof(Entry) + 2 * sizeof(float) + 2);
   }
-  /// Bytes of a brick's nodes in the orders of use and distance, and of the heap's overhead.
+  /// Bytes that a brick needs in addition to its samples: its nodes in the orders of use and distance, and the heap's
+  /// overhead.
   static constexpr std::uint64_t bytes_beside_brick = 128;
 
   [[nodiscard]] Counts counts() const;
@@ -72,7 +73,7 @@ class BrickCache {
     std::atomic<const std::byte*> ready{nullptr};
     std::uint32_t users = 0;
     bool loading = false;
-    std::list<std::size_t>::iterator used;  ///< in by_use_, while ready
+    std::list<std::size_t>::iterator used;  ///< position in by_use_, while the brick is ready
   };
 
   std::uint64_t bytes_of(std::size_t brick) const;

@@ -40,7 +40,8 @@ struct BrickLayout {
     const auto n = static_cast<std::int64_t>(brick);
     return {n % bricks[0], n / bricks[0] % bricks[1], n / bricks[0] / bricks[1]};
   }
-  /// The brick along `axis` that contains a sample, for a shared sample the upper one.
+  /// Returns the number, along `axis`, of the brick that contains a sample; for a shared sample, that of the upper
+  /// brick.
   [[nodiscard]] std::int64_t brick_of(std::size_t axis, std::int64_t sample) const {
     return std::min(sample / size, bricks[axis] - 1);
   }
@@ -52,7 +53,7 @@ struct BrickLayout {
     }
     return box;
   }
-  /// Capacity of a brick's memory in samples along each axis.
+  /// Returns the number of samples along each axis for which a brick's memory has room.
   [[nodiscard]] scene::GridIndex room(const scene::GridIndex& b) const {
     if (edge == EdgeBricks::fixed) return {size + shared, size + shared, size + shared};
     const scene::SampleBox samples_box = box(b);

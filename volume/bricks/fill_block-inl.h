@@ -64,15 +64,15 @@ HWY_INLINE hn::Vec<DD> load_doubles(const T* p) {
   }
 }
 
-/// Writes LaneSamples::lane() of `count` samples, to the bit, and the rounding error of each unless `rest` is null.
-/// `readable` samples may be read from `from` on. Up to a vector of floats from `to` on may be rewritten with unchanged
-/// values.
+/// Writes LaneSamples::lane() of `count` samples, bit for bit, and the rounding error of each unless `rest` is null.
+/// `readable` samples may be read from `from` on. Up to a vector of floats, from `to` on, may be overwritten with
+/// unchanged values.
 template <class T>
 HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable, const LaneSamples& lanes, float* to,
                         float* rest) {
   std::int64_t i = 0;
   if constexpr (std::is_same_v<T, float> || sizeof(T) <= 2) {
-    // With a power of two and no shift, single precision rounds alike.
+    // If the factor is a power of two and there is no shift, single precision rounds in the same way.
     if (lanes.scales_floats && rest == nullptr) {
       const hn::ScalableTag<float> df;
       const auto scale = Set(df, static_cast<float>(lanes.factor));
@@ -149,17 +149,17 @@ struct Target {
   const FrameView& frame;
   const RayAxes axes;
   SlabBlock& block;
-  std::int64_t first_k;  ///< of slice 0
+  std::int64_t first_k;  ///< k of slice 0
   int slices;
 
-  /// The slice of a lattice plane along the k axis.
+  /// Returns the slice of a lattice plane along the k axis.
   HWY_INLINE int slice_of(std::int64_t native_k) const {
     const std::int64_t last = frame.samples[static_cast<std::size_t>(axes.k)] - 1;
     return static_cast<int>((axes.mirrored ? last - native_k : native_k) - first_k);
   }
 
   /// Calls put(x, y, z, count, to) for every row of samples of the native box [low, high] that is in the block, slice
-  /// by slice. Not for rays whose k axis is x.
+  /// by slice. Must not be used if x is the rays' k axis.
   template <class Put>
   HWY_INLINE void rows_in(const std::int64_t (&low)[3], const std::int64_t (&high)[3], const Put& put) const {
     const auto ka = static_cast<std::size_t>(axes.k), ja = static_cast<std::size_t>(axes.j);
@@ -192,7 +192,7 @@ struct Target {
   }
 
   /// Calls put(x_low, x_high, to) for the samples x_low..x_high of a native row that are in the block and contiguous
-  /// there, beginning at `to`. If the k axis is x they are not contiguous, and `put` is called for each sample.
+  /// there, beginning at `to`. If x is the k axis, samples are not contiguous, and `put` is called for each sample.
   template <class Put>
   HWY_INLINE void row(std::int64_t y, std::int64_t z, std::int64_t x_low, std::int64_t x_high, const Put& put) const {
     if (axes.k != 0) {
@@ -215,7 +215,7 @@ struct Target {
   }
 };
 
-/// The filling of one block: the samples it needs, and whether some of them are hidden.
+/// Fills one block: determines the samples that the block needs, and whether some of them are hidden.
 class BlockFill {
  public:
   HWY_INLINE BlockFill(const FrameView& frame, const RayAxes& axes, const ChunkBox& box, SlabBlock& block)
@@ -323,7 +323,8 @@ class BlockFill {
   [[nodiscard]] HWY_INLINE std::int64_t cell_of(std::size_t axis, std::int64_t sample) const {
     return std::min(sample / side, frame_.ranges->cells[axis] - 1);
   }
-  /// Whether cell `a` along x is visible in the row of samples (y, z). A row on a plane between cells belongs to both.
+  /// Whether cell `a` along x is visible in the row of samples (y, z). A row on a plane between cells belongs to both
+  /// cells.
   [[nodiscard]] HWY_INLINE bool seen(std::int64_t a, std::int64_t y, std::int64_t z) const {
     const scene::GridIndex& cells = frame_.ranges->cells;
     const std::int64_t b = cell_of(1, y), c = cell_of(2, z);
@@ -343,7 +344,7 @@ class BlockFill {
     return false;
   }
 
-  /// The part of the block's samples that is in a brick.
+  /// Returns the part of the block's samples that is in a brick.
   HWY_INLINE void part_in(const scene::SampleBox& brick, std::int64_t (&from)[3], std::int64_t (&to)[3]) const {
     for (std::size_t a = 0; a < 3; ++a) {
       from[a] = std::max(low_[a], brick.low[a]);
@@ -351,7 +352,7 @@ class BlockFill {
     }
   }
 
-  /// Copies from a brick without hidden cells. Not for rays whose k axis is x.
+  /// Copies all samples from a brick without hidden cells. Must not be used if x is the rays' k axis.
   HWY_INLINE void take_all_of(const scene::GridIndex& place) const {
     const BrickLayout& layout = frame_.bricks->layout();
     const scene::SampleBox brick = layout.box(place);
@@ -373,7 +374,7 @@ class BlockFill {
     frame_.bricks->release(layout.number(place));
   }
 
-  /// Copies a brick's visible samples. The brick is not acquired if there are none.
+  /// Copies a brick's visible samples. The brick is not acquired if it has no visible samples.
   HWY_INLINE void take_seen_of(const scene::GridIndex& place, std::vector<float>& row_memory) const {
     const BrickLayout& layout = frame_.bricks->layout();
     const scene::SampleBox brick = layout.box(place);
@@ -381,7 +382,7 @@ class BlockFill {
     std::int64_t from[3], to[3];
     part_in(brick, from, to);
     const std::byte* bytes = nullptr;
-    // Converts samples [first, first + count) of the brick.
+    // Converts the brick's samples [first, first + count).
     const auto convert_some = [&](std::int64_t first, std::int64_t count, float* out, float* rest) HWY_ATTR {
       with_type(frame_.bricks->source().grid().type, [&](auto kind) HWY_ATTR {
         using T = decltype(kind);
@@ -393,7 +394,7 @@ class BlockFill {
       for (std::int64_t y = from[1]; y <= to[1]; ++y) {
         std::int64_t x = from[0];
         while (x <= to[0]) {
-          // A run of samples that belong to visible cells: [8a, 8a + 8] each.
+          // A run of samples that belong to visible cells; the samples of a cell are [8a, 8a + 8].
           std::int64_t end = to[0];
           if (some_hidden_ && !next_run(y, z, to[0], x, end)) continue;
           if (bytes == nullptr) bytes = frame_.bricks->acquire(layout.number(place), frame_.trace);
@@ -418,7 +419,8 @@ class BlockFill {
     if (bytes != nullptr) frame_.bricks->release(layout.number(place));
   }
 
-  /// Whether the row's sample x is visible: then the samples [x, end] are. Otherwise x advances to the next candidate.
+  /// Returns whether the row's sample x is visible. If so, the samples [x, end] are visible. Otherwise x advances to
+  /// the next candidate.
   HWY_INLINE bool next_run(std::int64_t y, std::int64_t z, std::int64_t last, std::int64_t& x,
                            std::int64_t& end) const {
     const std::int64_t a = cell_of(0, x), cells_x = frame_.ranges->cells[0];
@@ -439,14 +441,14 @@ class BlockFill {
   const int slices_;
   const Target target_;
   std::int64_t low_[3], high_[3];        ///< samples that the block takes: the native box around all slices
-  std::int64_t first_cell_, last_cell_;  ///< along x
+  std::int64_t first_cell_, last_cell_;  ///< range of cells along x
   bool some_hidden_;
 };
 
 }  // namespace fill
 
-/// Fills a block whose slabs and slices have been laid out with the samples of a box of voxels. Reads only bricks with
-/// voxels of the box.
+/// Fills a block with the samples of a box of voxels. The block's slabs and slices must have been laid out. Reads only
+/// bricks that have voxels of the box.
 HWY_NOINLINE inline void fill_block(const FrameView& frame, const RayAxes& axes, const ChunkBox& box,
                                     std::vector<float>& row_memory, SlabBlock& block) {
   const fill::BlockFill filling(frame, axes, box, block);

@@ -12,23 +12,23 @@ namespace tessera::volume {
 /// The map from stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * (lift *
 /// sample) + term).
 ///
-/// Unit      2^-29 of a power of two above the largest distance between the origin and a value: products of few
-///           differences remain finite.
-/// Origin    Zero if the range contains or almost contains it, so that float samples keep their bits; otherwise the
-///           middle of the range.
-/// Lift      A power of two, 1 except for values near the smallest doubles, where the inverse of the unit would be
-///           infinite.
-/// One       If all values are equal, the value is the origin, and its last place many units. Then all but the nearest
-///           knots are out of range, and are replaced by the function's values near the origin.
-/// Exact     A lane is (value - origin) / unit without rounding, so it is on the same side of a step as the value. True
-///           for float samples only if lanes keep fractions of a unit (`whole` is false).
+/// Unit      The unit is 2^-29 of a power of two above the largest distance between the origin and a value, so that
+///           products of few differences remain finite.
+/// Origin    The origin is zero if the range contains or almost contains zero, so that float samples keep their bits;
+///           otherwise it is the middle of the range.
+/// Lift      The lift is a power of two. It is 1 except for values near the smallest doubles, where the inverse of the
+///           unit would be infinite.
+/// One       If all values are equal, the origin is this value, and the value's last place is many units. All but the
+///           nearest knots are then out of range, and are replaced by the function's values near the origin.
+/// Exact     A lane is (value - origin) / unit without rounding, so it is on the same side of a step as the value. For
+///           float samples, this is true only if lanes keep fractions of a unit (`whole` is false).
 /// Blank     A sample that is not finite becomes NaN.
 struct LaneSamples {
   double origin = 0, unit = 1;
   double factor = 1, term = 0, lift = 1;
-  bool scales_floats = true;   ///< the factor is a power of two that floats can represent, and the term zero
+  bool scales_floats = true;   ///< the factor is a power of two that a float can represent, and the term is zero
   bool whole = true;           ///< lanes are rounded to integers
-  bool exact = false;          ///< see above
+  bool exact = false;          ///< see Exact above
   bool whole_numbers = false;  ///< lanes are exact integers regardless of `whole`
 
   LaneSamples() = default;
@@ -59,8 +59,9 @@ struct LaneSamples {
   }
 
  private:
-  /// Whether floats represent all lanes exactly: float samples without scale and shift, and integers of at most 23
-  /// bits. (Floats about a middle are multiples of 2^-24 of it.)
+  /// Whether floats represent all lanes exactly. This is true for float samples without scale and shift, and for
+  /// integers of at most 23 bits. (If the origin is the middle of the range, floats are multiples of 2^-24 of the
+  /// middle.)
   static bool is_exact(const scene::Grid& grid, double largest) {
     if (grid.type == scene::SampleType::float32) return grid.scale == 1 && grid.shift == 0;
     return !scene::is_float(grid.type) && grid.scale == std::nearbyint(grid.scale) &&

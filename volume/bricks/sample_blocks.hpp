@@ -9,20 +9,20 @@
 
 namespace tessera::volume {
 
-/// A source's values in double precision, voxel by voxel, for one thread. They are read in blocks of 16^3 voxels, and
-/// 256 blocks are cached: 10 MB. The source must outlive it.
+/// Provides a source's values in double precision, voxel by voxel, for one thread. They are read in blocks of 16^3
+/// voxels; 256 blocks are cached (10 MB). The source must outlive this object.
 class SampleBlocks {
  public:
   explicit SampleBlocks(const scene::SampleSource& source);
 
-  /// Upper bound of the memory of one object.
+  /// Upper bound of the memory of one object, in bytes.
   static std::uint64_t most_bytes(const scene::GridGeometry& geometry);
 
-  /// The values at a voxel's corners; corner (a, b, c) has index a + 2 b + 4 c. All values of cell data are the same.
-  /// NaN where blank.
+  /// Returns the values at a voxel's corners; corner (a, b, c) has index a + 2 b + 4 c. For cell data, all values are
+  /// the same. Blank values are NaN.
   [[nodiscard]] std::array<double, 8> corners(const scene::GridIndex& voxel);
 
-  /// Counted since construction.
+  /// These counts start at construction.
   [[nodiscard]] std::uint64_t blocks_read() const { return blocks_read_; }
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 

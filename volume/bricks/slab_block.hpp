@@ -20,7 +20,7 @@ class FloatRoom {
 
   [[nodiscard]] float* data() { return first_; }
   [[nodiscard]] const float* data() const { return first_; }
-  /// Ensures room for at least `count` floats; if this allocates, all are 0.
+  /// Ensures room for at least `count` floats. If this allocates memory, all floats are 0.
   void make_room(std::size_t count);
 
  private:
@@ -33,10 +33,10 @@ class FloatRoom {
 
 /// The part of the cast box of voxels in a chunk of 32 slabs, as the kernels use it.
 struct ChunkBox {
-  std::int64_t first_k;              ///< of the chunk, independent of the box
+  std::int64_t first_k;              ///< k of the chunk's first plane, independent of the box
   int first_slab, slabs;             ///< the slabs of the box are [first_slab, slabs)
-  int i_low, i_last, j_low, j_last;  ///< voxels of the box, including the last
-  scene::GridIndex low, high;        ///< the whole box, along the volume's own axes
+  int i_low, i_last, j_low, j_last;  ///< first and last voxels of the box
+  scene::GridIndex low, high;        ///< the whole box, along the volume's own axes; `high` is not included
 };
 
 /// The samples that one tile's rays need in a chunk of 32 slabs of voxels, as lane scalars.
@@ -56,8 +56,8 @@ struct SlabBlock {
   std::array<int, slabs> slab_i, slab_i_last, slab_j, slab_j_last;
   std::ptrdiff_t pitch = 0, rows = 0;
   FloatRoom samples;
-  /// The difference of exact samples and their floats, as lane scalars in the same positions. Used if gradients are
-  /// needed of samples that are not exact as floats, otherwise empty.
+  /// The difference between exact samples and their floats, as lane scalars, at the same positions. Filled if gradients
+  /// are needed of samples that are not exact as floats, otherwise empty.
   bool has_rest = false;
   FloatRoom rest;
 
@@ -74,7 +74,7 @@ struct SlabBlock {
     const auto s = static_cast<std::size_t>(n);
     return samples.data() + margin + (n * rows + (j - low_j[s])) * pitch + (i - low_i[s]);
   }
-  /// Makes room for the current `pitch` and `rows`; the contents are arbitrary finite numbers or NaN.
+  /// Allocates memory for the current `pitch` and `rows`; the contents are arbitrary finite numbers or NaN.
   void reserve() {
     const auto size = static_cast<std::size_t>(2 * margin + slices * pitch * rows);
     samples.make_room(size);

@@ -49,7 +49,7 @@ struct TileCast {
 template <bool cell_data, class Surfaces, class Window, class Lookup>
 class PacketCast {
  public:
-  /// `before` is the transmittance in front of the chunk, `seen` whether light has begun.
+  /// `before` is the transmittance in front of the chunk; `seen` marks lanes whose light has begun.
   HWY_INLINE PacketCast(const TileCast<Lookup>& tile, const PacketSlabs& slabs, const Lanes& lanes, VF before, MF seen)
       : chunk_(tile.chunk),
         frame_(tile.chunk.frame),
@@ -114,7 +114,7 @@ class PacketCast {
     return !AllFalse(d, And(mirrored_.live, lanes_.k_out > Set(d, static_cast<float>(n))));
   }
 
-  /// Whether the eight slabs beginning with n may meet a visible cell.
+  /// Whether the eight slabs from n on may meet a visible cell.
   HWY_INLINE bool any_visible_ahead(int n) const {
     const int m = n + SlabLines::most - 1;
     const std::int64_t end_k = frame_.voxels[static_cast<std::size_t>(chunk_.axes.k)];
@@ -136,7 +136,7 @@ class PacketCast {
             slabs_.border[n] == 0};
   }
 
-  /// The lanes in slab n.
+  /// Returns the lanes that are in slab n.
   HWY_INLINE MF here(int n) const {
     const DF d;
     return And(mirrored_.live,
@@ -194,8 +194,8 @@ class PacketCast {
     }
   }
 
-  /// Adds two slabs as one line from front to back. The field deviates from it by a tent, whose height is that of a's
-  /// back end above the middle of the line, and by at most r in addition:
+  /// Adds two slabs as one line from front to back. The field deviates from the line by a tent, whose height is the
+  /// difference between the field at the back of `a` and the middle of the line, and in addition by at most r:
   ///
   ///          . a.s_1                    tent = a.s_1 - (a.s_0 + b.s_1) / 2
   ///        .   .                        r    = deviations of a and b from their own lines
@@ -203,8 +203,8 @@ class PacketCast {
   ///    .   . - '
   ///   a.s_0
   ///
-  /// The tent is even about the middle, so its product with the slope of the line vanishes, and only that of r remains.
-  /// Returns false, and adds nothing, if the remaining error may be too large.
+  /// The tent is even about the middle, so its product with the slope of the line vanishes, and only the product of r
+  /// with the slope remains. Returns false, and adds nothing, if the remaining error may be too large.
   HWY_INLINE bool add_pair(const Line& a, const Line& b, int n) {
     const DF d;
     const VF half = Set(d, 0.5f);
@@ -229,7 +229,7 @@ class PacketCast {
     return true;
   }
 
-  /// Adds slab n, or slabs n and n + 1 if `two` is set and one line can represent both. Returns the number of slabs.
+  /// Adds slab n, or slabs n and n + 1 if `two` is set and one line can represent both. Returns their number.
   HWY_INLINE int add_lines(const SlabLines& lines, int n, bool two) {
     const DF d;
     const int m = n - lines.first;
@@ -268,7 +268,7 @@ class PacketCast {
   }
 
   /// Whether all samples that lanes may meet in slab n are certainly in one interval, which then becomes the current
-  /// one. Then the field is in the interval, too, even if rounding may place it beyond a step.
+  /// interval. The field is then in this interval, too, even if rounding may place it beyond a step.
   HWY_NOINLINE bool on_one_side(int n) {
     const auto all_held = [&] {
       const int corner = cell_data ? 0 : 1;
@@ -291,15 +291,15 @@ class PacketCast {
   static HWY_INLINE VF spread_of(const Line& line, VF length) {
     return length * line.rho * MulAdd(Abs(line.span), Set(DF(), 0.25f), line.rho);
   }
-  /// Bound of the deviation's effect on how the front attenuates the back, relative to the tolerance.
+  /// Upper bound of the deviation's effect on how the front of the slab attenuates the back, relative to the tolerance.
   HWY_INLINE VF dimming_of(const Line& line, VF length) const {
     return length * Set(DF(), current_.uniform().dimming_bound / 9) * (length * line.rho);
   }
 
-  /// Adds a slab that is too rough for a line as a line plus the effect of the field's bend, to first order in the
-  /// slab's optical depth. Where extinction k and colour c are linear in the field, light increases by k' c' times the
-  /// product of the deviations, and decreases by c' k^2 times their covariance with the position, as the front
-  /// attenuates the back. Returns false, and adds nothing, if the remaining error may be too large.
+  /// Adds a slab that is too rough for a line. Its light is that of a line plus the effect of the field's bend, to
+  /// first order in the slab's optical depth. Where extinction k and colour c are linear in the field, light increases
+  /// by k' c' times the product of the deviations, and decreases by c' k^2 times their covariance with the position,
+  /// since the front attenuates the back. Returns false and adds nothing if the remaining error may be too large.
   HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
     const DF d;
     const UniformLookup& table = current_.uniform();
@@ -336,7 +336,7 @@ class PacketCast {
       note_ramps(current_.uniform(), length, before, rays_.light.transmittance, rays_.notes);
   }
 
-  /// Adds a slab that crosses knots or is rough.
+  /// Adds a slab that crosses knots or is too rough for a line.
   HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
     const MF apart = cast_mixed(packet_, line, live, Set(DF(), static_cast<float>(n)), length, rays_);
     if (!AllFalse(DF(), apart)) cast_stretches(packet_, lines, n, apart, rays_);
@@ -460,7 +460,7 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
     PacketSlabs slabs(reach, chunk.box);
-    // Starts at this packet's interval, so that its bits do not depend on other packets.
+    // The search starts at this packet's interval, so that its bits do not depend on other packets.
     const int first = chunk.box.first_slab;
     current.begin_at(*chunk.block.at(first, slabs.i_first[first], slabs.j_first[first]));
     const auto cast = [&]<class Window>() HWY_ATTR {

@@ -20,13 +20,14 @@ struct ChunkView {
   const RayAxes axes;
   const SlabBlock& block;
   const ChunkBox& box;
-  const Reach* reach;  ///< by packet
+  const Reach* reach;  ///< one per packet
 };
 
 // The kernels of one chunk of 32 slabs, dispatched to the best instruction set. They accumulate the light of every
-// packet for which `reach` has any rays. Three compute exact integrals, one for each number of vectors in which a
-// column of the transfer function's table is stored (integrals/integrate_lanes-inl.h). They call three others for
-// frames with surfaces. One samples in steps. They are separate sources because they take long to compile.
+// packet for which `reach` has any rays. Three kernels compute exact integrals; they differ in the number of vectors in
+// which a column of the transfer function's table is stored (integrals/integrate_lanes-inl.h). For frames with
+// surfaces, they call three other kernels. One more kernel samples in steps. The kernels are separate sources because
+// they take long to compile.
 
 void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
@@ -36,7 +37,8 @@ void cast_surfaces_two_vectors(const ChunkView& chunk, TileRays& rays, TileCount
 void cast_surfaces_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 
-/// For an invisible chunk, whose block is not filled: pre-integrated steps that begin in it are invisible too.
+/// Called for an invisible chunk, whose block is not filled: pre-integrated steps that begin in the chunk are
+/// invisible, too.
 void skip_chunk_in_steps(const ChunkView& chunk, TileRays& rays);
 
 }  // namespace tessera::volume

@@ -2,9 +2,9 @@
 // The interval of the transfer function that a packet is currently in. Included once per instruction set (Highway's
 // include guard idiom).
 //
-// What      The table's row of that interval, for all lanes, and tests whether scalars are in the interval.
-// How       Consecutive slabs are usually in the same interval, so a comparison with its ends replaces a search in each
-//           lane.
+// What      Provides the table's row of that interval, for all lanes, and tests whether scalars are in the interval.
+// How       Consecutive slabs are usually in the same interval, so a comparison with the interval's ends replaces a
+//           search in each lane.
 // Accuracy  Where the interval ends at a step of the function, the end is moved inwards by the field's noise
 //           (lane_error_bound.hpp). For samples it is not moved if lanes represent the samples and the step exactly.
 
@@ -43,7 +43,7 @@ class CurrentInterval {
     set(n);
     return window.all_in(held_low_, held_high_);
   }
-  /// The interval of a lane scalar.
+  /// Returns the interval of a lane scalar.
   [[nodiscard]] HWY_INLINE std::size_t interval_of(float s) const {
     const float* const knots = table_.column(LaneTable::edge) + 1;
     return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
@@ -76,7 +76,8 @@ class CurrentInterval {
       const LaneErrorBound& bound = *frame_.error_bound;
       if (!bound.step.empty() && bound.step[n] > 0) guarded_low_ += bound.noise;
       if (!bound.step.empty() && bound.step[n + 1] > 0) guarded_high_ -= bound.noise;
-      // Samples that lanes represent exactly are on their side of a step, and so is the field if all samples are.
+      // Samples that lanes represent exactly are on the correct side of a step. So is the field if all samples are on
+      // that side.
       if (bound.sharp[n] == 0) held_low_ = guarded_low_;
       if (bound.sharp[n + 1] == 0) held_high_ = guarded_high_;
       if (!bound.ramp.empty() && bound.ramp[n] > 0)

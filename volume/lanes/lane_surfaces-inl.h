@@ -27,14 +27,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// A row of SurfaceView at edges.
+/// Reads a row of SurfaceView at the given edges.
 HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row, VI edge) {
   const DF d;
   if (view.count + 2 <= hn::Lanes(d)) return TableLookupLanes(LoadU(d, row.data()), IndicesFromVec(d, edge));
   return GatherIndex(d, row.data(), edge);
 }
 
-/// The gap that contains a scalar (SurfaceView); the first gap for NaN.
+/// Returns the gap that contains a scalar (SurfaceView); for NaN, the first gap.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
@@ -44,7 +44,7 @@ HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   return gap;
 }
 
-/// Used for frames without surfaces.
+/// Replaces LaneSurfaces in frames without surfaces.
 struct NoSurfaces {
   explicit HWY_INLINE NoSurfaces(const FrameView&) {}
   HWY_INLINE bool none_between(VF, VF, MF) { return true; }
@@ -54,9 +54,9 @@ struct NoSurfaces {
   }
 };
 
-/// The gap between two surfaces' values that contained each lane's field last, narrowed by the field's noise at both
-/// ends, and one gap for all samples of a window. They only accelerate the test that there is no surface; the results
-/// do not depend on them.
+/// For each lane, the gap between two surfaces' values that contained the lane's field last, narrowed by the field's
+/// noise at both ends; and one gap for all samples of a window. The stored gaps only accelerate the test that there is
+/// no surface; results do not depend on them.
 class LaneSurfaces {
  public:
   explicit HWY_INLINE LaneSurfaces(const FrameView& frame)
@@ -66,7 +66,7 @@ class LaneSurfaces {
   HWY_INLINE bool none_between(VF low, VF high, MF live) {
     return HWY_LIKELY(AllFalse(DF(), outside(low, high, live))) || AllFalse(DF(), met(low, high, live));
   }
-  /// The live lanes that may meet a surface.
+  /// Returns the live lanes that may meet a surface.
   HWY_NOINLINE MF met(VF low, VF high, MF live) {
     const DF d;
     const VI gap = surface_gap(view_, low);

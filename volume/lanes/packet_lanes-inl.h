@@ -34,8 +34,8 @@ struct VoxelRange {
   int first, last;
 };
 
-/// The voxels of `box` that rays in slab n may be in, for rays between `low` and `high` at the chunk's first and last
-/// plane.
+/// Returns the voxels of `box` in which rays may be in slab n. The rays are between `low` and `high` at the chunk's
+/// first and last plane.
 HWY_INLINE VoxelRange slab_range(const float (&low)[2], const float (&high)[2], int n, const VoxelRange& box) {
   constexpr float each = 1.0f / SlabBlock::slabs, slack = 2e-3f;
   const float l0 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n)),
@@ -50,27 +50,27 @@ HWY_INLINE VoxelRange slab_range(const float (&low)[2], const float (&high)[2], 
 /// A packet's lanes in one chunk.
 struct Lanes {
   VF bx, by, per_bx, per_by;            ///< slopes and their inverses
-  VF x, y;                              ///< at the chunk's first plane, relative to voxel (i, j)
-  VF i, j;                              ///< that voxel, relative to (i_base, j_base)
+  VF x, y;                              ///< position at the chunk's first plane, relative to voxel (i, j)
+  VF i, j;                              ///< the voxel at that position, relative to (i_base, j_base)
   VF i_least, i_most, j_least, j_most;  ///< voxels of the box, relative to (i, j)
   VF k_in, k_out;                       ///< relative to the chunk's first plane
   VF light_view;                        ///< shading: cosine between light and view
-  VF length, bends;                     ///< length of the ray per slab; bx by
+  VF length, bends;                     ///< length of the ray per slab; product of bx and by
   int i_base, j_base;
 };
 
-/// A lane's path through one voxel of a slab: the voxel, relative to (i, j) of the chunk's first plane, and where the
-/// path begins and ends, from 0 at the front plane to 1 at the back plane.
+/// A lane's path through one voxel of a slab: the voxel, relative to voxel (i, j) at the chunk's first plane, and where
+/// the path begins and ends, from 0 at the front plane to 1 at the back plane.
 struct Stretch {
   VF i, j, begin, end;
 };
 
 /// A packet's path through a slab.
 struct SlabPath {
-  VF k, x, y;             ///< the front plane, and the rays' positions there
-  VF from, to;            ///< the part of the slab in the ray's range
+  VF k, x, y;             ///< k of the front plane, and the rays' positions there
+  VF from, to;            ///< the part of the slab that is in the ray's range
   Stretch stretches[3];   ///< front to back
-  VF i_offset, j_offset;  ///< from a voxel to its position in the window
+  VF i_offset, j_offset;  ///< from a voxel to the voxel's position in the window
 };
 
 HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_window) {
@@ -109,7 +109,7 @@ template <class Window>
 HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Stretch& stretch) {
   VF i = stretch.i + path.i_offset, j = stretch.j + path.j_offset;
   if constexpr (std::is_same_v<Window, GatherWindow>) {
-    // Lanes without a stretch may be anywhere.
+    // Lanes without a stretch may have any position.
     const MF there = path.to > path.from;
     i = IfThenElseZero(there, i);
     j = IfThenElseZero(there, j);
@@ -117,7 +117,7 @@ HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Str
   return window.index(i, j);
 }
 
-/// Lanes [ray, ray + Lanes()) at the chunk's first plane; voxels relative to (i_base, j_base).
+/// Sets up lanes [ray, ray + Lanes()) at the chunk's first plane; voxels are relative to (i_base, j_base).
 HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_base, const TileRays& rays) {
   const DF d;
   const FrameView& frame = chunk.frame;

@@ -76,7 +76,7 @@ struct GroupWork {
   VF k_out, depth_before;
   std::uint64_t samples_before;
 
-  /// Adds the work before slab `next`, or up to where the packet stopped.
+  /// Adds the work up to slab `next`, or up to where the packet stopped.
   HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
                            const Progress& progress, const TileCounts& counts) const {
     const DF d;

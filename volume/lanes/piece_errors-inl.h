@@ -42,7 +42,7 @@ struct UniformLookup {
   HWY_INLINE VF at(int column, Index) const { return Set(DF(), row[column]); }
 };
 
-/// A row of LaneErrorBound at the intervals or edges of the wanted lanes; zero in other lanes.
+/// Reads a row of LaneErrorBound at the intervals or edges of the wanted lanes; returns zero in other lanes.
 HWY_INLINE VF bound_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
   return IfThenElseZero(wanted, GatherIndex(d, row.data(), IfThenElseZero(RebindMask(DI(), wanted), at)));
@@ -55,14 +55,14 @@ struct IntervalLanes {
   typename Lookup::Index index;
   VI interval;
   MF wanted;
-  const LaneErrorBound* bound;  ///< null: not needed
+  const LaneErrorBound* bound;  ///< null: error bounds are not needed
 
-  /// A row of the bound at the intervals.
+  /// Reads a row of the bound at the intervals.
   HWY_INLINE VF row(const std::vector<float>& of) const { return bound_row(of, interval, wanted); }
 };
 
-/// Records the errors of a stretch due to the ramps of its intervals. Of an opaque stretch, the colour's error is
-/// visible at its front.
+/// Records the errors of a stretch due to the ramps of its intervals. If the stretch is opaque, the error of its colour
+/// is visible only at its front.
 template <class Lookup>
 HWY_INLINE void note_ramps(const IntervalLanes<Lookup>& in, VF length, VF before, VF behind, RayNotes& notes) {
   if (in.bound->ramp.empty()) return;
@@ -82,16 +82,17 @@ HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF 
   notes.error_bound = MulAdd(through, Set(d, table.ramp_steady), notes.error_bound);
 }
 
-/// A part of the cubic where the side of a step is uncertain: its length, and the steps' edges.
+/// A part of the cubic where the side of a step is uncertain: the length of this part, and the edges of the steps.
 struct Touch {
   MF near;
   VI edge;
   VF length;
 };
 
-/// Finds lanes where `at`, an end of an interval, an extremum or a crossing, is near an edge of its interval. Its
-/// position is uncertain by noise / |slope|, or where the cubic is level by the square root of 2 noise / |second
-/// derivative|. `length` is that of the whole cubic. Returns false, and does not set `touch`, if no lane is near.
+/// Finds lanes where `at` (an end of an interval, an extremum or a crossing) is near an edge of its interval. Its
+/// position is uncertain by noise / |slope|; where the cubic is level, by the square root of 2 noise / |second
+/// derivative|. `length` is that of the whole cubic. Returns false, and does not set `touch`, if no lane is near an
+/// edge.
 template <class Lookup>
 HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                         Touch& touch) {
@@ -112,10 +113,10 @@ HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const C
   return true;
 }
 
-/// Error bounds of a stretch, as seen from where its light is measured.
+/// Error bounds of a stretch, as seen from the position where its light is measured.
 struct StretchErrors {
   VF steps, ramps;
-  VF left;  ///< from pieces that could not be made small enough
+  VF left;  ///< error of pieces that could not be made small enough
 };
 
 /// Excess or missing optical depths w of media of colour c, at positions with transmittance T and light L in front of
@@ -123,7 +124,7 @@ struct StretchErrors {
 /// Cauchy and Schwarz, that is less than the square root of (sum of w) (sum of w |a - E|^2).
 struct Excess {
   VF depth, ramps, red, green, blue, square;  ///< sums of w, of w of ramps, of w a and of w |a|^2
-  VF beside_steps, beside_ramps;              ///< differences of light that do not depend on what is behind
+  VF beside_steps, beside_ramps;  ///< differences of light at steps and ramps that do not depend on what is behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
     const VF a[3] = {MulAdd(through, color[0], progress.red), MulAdd(through, color[1], progress.green),
@@ -163,7 +164,7 @@ HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c
   const VF error = Min(touch.length * weight, Set(DF(), in.bound->most));
   errors.steps = MulAdd(error, progress.transmittance, errors.steps);
 }
-/// Adds the same error, bounded closely.
+/// Adds a close bound of the same error.
 template <class Lookup>
 HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                                  const Progress& progress, Excess& excess) {
@@ -180,8 +181,8 @@ HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c
   excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
 }
 
-/// Adds the error, bounded closely, of a piece of a ramp that ends at s_end: of `length`, with transmittance `before`
-/// at its front.
+/// Adds a close bound of the error of a piece of a ramp. The piece ends at scalar s_end, has the length `length`, and
+/// the transmittance at its front is `before`.
 template <class Lookup>
 HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, VF length, VF before,
                                   const Progress& progress, Excess& excess) {

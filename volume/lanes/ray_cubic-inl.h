@@ -27,8 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// One stretch per lane: the field at its ends and middle, the cubic's leading coefficient, the length (zero if there
-/// is none), the position in the slab where it begins, and its extent in the slab.
+/// One stretch per lane: the field at its ends and in its middle, the cubic's leading coefficient, the length (zero if
+/// there is no stretch), the position in the slab where the stretch begins, and its extent in the slab.
 struct Piece {
   VF s_0, s_mid, s_1, p_3, length, begin, extent;
 };
@@ -48,7 +48,7 @@ struct CubicPlace {
   VF v, s;
 };
 
-/// Positions of the cubic's extrema in (0, 1), 1 where there are none.
+/// Returns the positions of the cubic's extrema in (0, 1); 1 for an extremum that does not exist.
 HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f), three = Set(d, 3.0f);
@@ -64,7 +64,8 @@ HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   second = Max(a, b);
 }
 
-/// A v between two positions at which the cubic, monotonic between them, has the value `level`.
+/// Returns a v between two positions at which the cubic has the value `level`. The cubic must be monotonic between
+/// them.
 HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicPlace& to, VF level, MF wanted) {
   const DF d;
   const VF half = Set(d, 0.5f);
@@ -90,7 +91,7 @@ HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicP
   return v;
 }
 
-/// The cubic through a piece's ends and middle; zero where lanes are not active.
+/// Returns the cubic through a piece's ends and middle; zero in lanes that are not active.
 HWY_INLINE Cubic cubic_of(const Piece& piece, MF active) {
   const DF d;
   const VF s_0 = IfThenElseZero(active, piece.s_0), s_mid = IfThenElseZero(active, piece.s_mid),
@@ -113,14 +114,15 @@ HWY_INLINE MF is_monotone(const Cubic& c) {
   return Not(And(most > zero, least < zero));
 }
 
-/// A cubic's extrema in (0, 1); 1 where there are none. It is monotonic between consecutive ones.
+/// The extrema of a cubic in (0, 1); 1 for an extremum that does not exist. The cubic is monotonic between consecutive
+/// extrema.
 struct Turns {
   VF first, second;
 
   HWY_INLINE Turns(const Cubic& c, MF active) : first(Set(DF(), 1.0f)), second(first) {
     if (!AllFalse(DF(), AndNot(is_monotone(c), active))) find_extrema(c, first, second);
   }
-  /// The next extremum behind v, or the end.
+  /// Returns the next extremum behind v, or the end.
   HWY_INLINE VF after(VF v) const {
     return IfThenElse(v < first, first, IfThenElse(v < second, second, Set(DF(), 1.0f)));
   }

@@ -48,7 +48,7 @@ struct RoughnessBounds {
   VF product, shadow, dimming, extinction;
 };
 
-/// The error of a stretch relative to the tolerance; see Accuracy above.
+/// Returns the error of a stretch relative to the tolerance; see Accuracy above.
 HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
   const DF d;
   const VF odd = Abs(p_3), even = Abs(m);
@@ -79,7 +79,7 @@ HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Prog
   return true;
 }
 
-/// The extinction at scalar s of an interval.
+/// Returns the extinction at scalar s of an interval.
 template <class Lookup>
 HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, VF s) {
   const VF half = MulAdd(table.at(LaneTable::half_extinction_slope, index), s - table.at(LaneTable::base, index),
@@ -99,12 +99,12 @@ HWY_INLINE FunctionSlopes slopes_in(const Lookup& table, typename Lookup::Index 
           Max(Max(slope(LaneTable::red_slope), slope(LaneTable::green_slope)), slope(LaneTable::blue_slope))};
 }
 
-/// Largest number of times that a stretch is halved; 4096 parts of an optical depth of 1e4 are still thin.
+/// Largest number of times that a stretch is halved. With an optical depth of 1e4, the 4096 parts are still thin.
 constexpr int most_halvings = 12;
 
 /// Adds stretches that cross knots, are rough, or whose lanes are in different intervals. Returns a bound of their
-/// errors, or a closer one if `closely`, where `progress` is that of the stretch alone. Lanes with NaN (blank) samples
-/// add nothing.
+/// errors; with `closely`, a closer bound, for which `progress` must be that of the stretch alone. Lanes with NaN
+/// (blank) samples add nothing.
 // Long: the values of a round stay in registers. With its steps as inlined functions a frame takes 11 % longer
 // (AVX-512).
 template <bool closely, class Lookup>
@@ -125,7 +125,8 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   const float* const ramps =
       frame.error_bound != nullptr && !frame.error_bound->ramp.empty() ? frame.error_bound->ramp.data() : nullptr;
   VF v = zero, s = c.p_0;
-  // Each round ends at a knot, an extremum, a halving or the stretch's end; most functions have few knots per stretch.
+  // Each round ends at a knot, an extremum, a halving or the end of the stretch; most functions have few knots per
+  // stretch.
   for (int round = 0; round < 4096; ++round) {
     const VF turn = turns.after(v);
     const VF s_turn = IfThenElse(turn == one, s_1, c.at(turn));
@@ -144,7 +145,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     RoughnessBounds bounds;
     bounds.product = table.independent ? zero : Set(d, 0.1f) * (slope.extinction * slope.color) * per_tolerance;
     bounds.shadow = slope.extinction * slope.extinction * Set(d, 0.03f * frame.largest_color) * per_tolerance;
-    // Attenuated colour needs less accuracy: behind 14 optical depths any value is accurate enough.
+    // Attenuated colour needs less accuracy; behind an optical depth of 14, any value is accurate enough.
     const VF seen = per_tolerance * (slope.color * progress.transmittance);
     VF m, length;
     for (int halvings = 0;; ++halvings) {
@@ -158,7 +159,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
       const MF rough = error > one;
       if (AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
-        // A part that is still not smooth counts as an error as large as it is visible.
+        // A part that is still not smooth counts as an error of the size of its visible light.
         const VF capped = Min(error * Set(d, frame.piece_tolerance), one);
         errors.left = MulAdd(IfThenElseZero(rough, capped), progress.transmittance, errors.left);
         break;
@@ -182,7 +183,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     note_first_light(progress, MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(has_steps)) add_step({end, s_end});
     if (ramps != nullptr) {
-      // Lanes that are finished have an interval, but no length.
+      // Lanes that are finished still have an interval, but no length.
       const VF ramp = GatherIndex(d, ramps, interval);
       if (!closely) {
         errors.ramps = MulAdd(length * before, ramp, errors.ramps);
@@ -195,7 +196,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     active = And(active, v < one);
     if (AllFalse(d, active)) break;
   }
-  // The part not reached in 4096 rounds counts as an error.
+  // The part that was not reached in 4096 rounds counts as an error.
   errors.left = errors.left + IfThenElseZero(active, progress.transmittance);
   if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
   return errors;

@@ -27,8 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// The axis with the largest component of a direction (the lowest of equal ones), times two, plus one if it is
-/// negative.
+/// Returns two times the axis with the largest component of a direction (the lowest of equal axes), plus one if the
+/// component is negative.
 HWY_INLINE int axis_code(double x, double y, double z) {
   const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   if (ax >= ay && ax >= az) return x < 0 ? 1 : 0;
@@ -49,20 +49,21 @@ HWY_INLINE unsigned axis_codes(const PixelRays& rays, int x0, int y0) {
   return codes;
 }
 
-/// In voxels: a ray that stays this close to a lattice plane counts as being in the plane. Covers rounding in views
-/// along axes.
+/// A ray that stays this close to a lattice plane, in voxels, counts as being in the plane. This covers rounding errors
+/// in views along axes.
 constexpr double in_plane_within = 1e-9;
 
-/// The offset of these rays in voxels along an axis: to the side that they would be on if they were shifted by (e, e^2)
-/// pixels for an infinitesimal e. The offset below a plane is a float's last place before 1, as positions are floats in
-/// [0, 1) within a voxel; the offset above it is the resolution of doubles at 65,536 voxels.
+/// Returns the offset, in voxels along an axis, that moves these rays to the side on which they would be if they were
+/// shifted by (e, e^2) pixels for an infinitesimal e. If this is below the plane, the offset is a float's last place
+/// before 1, because positions are floats in [0, 1) within a voxel; if it is above the plane, the offset is the
+/// resolution of doubles at 65,536 voxels.
 HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axis) {
   const double by_x = perspective ? rays.direction_x[axis] : rays.origin_x[axis],
                by_y = perspective ? rays.direction_y[axis] : rays.origin_y[axis];
   return (std::abs(by_x) > 1e-9 * std::abs(by_y) ? by_x : by_y) < 0 ? -0x1p-24 : 0x1p-36;
 }
 
-/// Whether no ray of the tile can be in a lattice plane across an axis, because none is nearly parallel to it.
+/// Whether no ray of the tile can be in a lattice plane across an axis, because no ray is nearly parallel to the plane.
 HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
   double least = 0, most = 0, largest = 0;
   for (int corner = 0; corner < 4; ++corner) {
@@ -72,11 +73,12 @@ HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, i
     least = corner == 0 ? d[axis] : std::min(least, d[axis]), most = corner == 0 ? d[axis] : std::max(most, d[axis]);
     largest = std::max({largest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   }
-  // Rays extend over half a voxel at least.
+  // Each ray extends over half a voxel at least.
   return std::max(least, -most) > 4 * in_plane_within * largest;
 }
 
-/// Moves rays a + b k that are in a lattice plane by `side`. `reach`: the largest |k| relative to their origin.
+/// Moves rays a + b k that are in a lattice plane by `side`. `reach` is the largest |k| relative to the origin of the
+/// rays.
 template <class V>
 HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -102,7 +104,7 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   out = IfThenElse(outside, Set(d, -1.0), out);
 }
 
-/// Clips [in, out] to where a + b k >= 0. `inside` determines the side of rays that are in this plane.
+/// Clips [in, out] to where a + b k >= 0. `inside` states on which side rays are that are in this plane.
 template <class V>
 HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -118,7 +120,7 @@ HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   out = IfThenElse(And(level, side < zero), Set(d, -1.0), out);
 }
 
-/// The side of rays in a clip plane, by the rule of side_of_plane().
+/// Returns the side of rays that are in a clip plane, by the rule of side_of_plane().
 HWY_INLINE bool is_inside(const PixelRays& rays, bool perspective, const KeptSide& kept) {
   double by_x = 0, by_y = 0;
   for (int a = 0; a < 3; ++a) {

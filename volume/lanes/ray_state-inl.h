@@ -25,7 +25,7 @@ using CL::lanes::Progress;
 
 /// Records of each ray that are updated along its path.
 struct RayNotes {
-  VF first;        ///< where light begins, in slabs from the chunk's first
+  VF first;        ///< where light begins, in slabs from the chunk's first slab
   MF seen;         ///< whether light has begun
   VF error_bound;  ///< possible errors (lane_error_bound.hpp), as seen from the chunk's front
   VF rough;        ///< sum of squares of independent rounding errors

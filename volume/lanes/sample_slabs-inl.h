@@ -44,7 +44,8 @@ namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
 struct RaySteps {
-  double k_in, each, last;  ///< where the ray enters, length of a step and of the last one, in units of k
+  /// Where the ray enters, the length of a step, and the length of the last step, in units of k.
+  double k_in, each, last;
   std::int64_t count;
 
   HWY_INLINE RaySteps(double k_in_, double k_out, double each_)
@@ -65,7 +66,7 @@ struct RaySteps {
   }
 };
 
-/// The trilinear field at (x, y, k) of the chunk, for lanes anywhere in the block; NaN near blanks.
+/// Returns the trilinear field at (x, y, k) of the chunk, for lanes anywhere in the block; NaN near blanks.
 template <bool cell_data>
 HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
                              MF active) {
@@ -99,7 +100,7 @@ HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_o
   return MulAdd(k - plane, change, front);
 }
 
-/// Bilinear lookup of optical depth and light in the pre-integrated table.
+/// Looks up optical depth and light in the pre-integrated table, with bilinear interpolation.
 HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (&out)[4]) {
   const DF d;
   const VF last = Set(d, static_cast<float>(table.size - 1)), zero = Zero(d);
@@ -117,12 +118,13 @@ HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (
   }
 }
 
-/// The steps of a packet's lanes [ray, ray + Lanes()) whose positions are in a chunk, relative to its first plane.
+/// The steps of a packet's lanes [ray, ray + Lanes()) whose positions are in a chunk, relative to the chunk's first
+/// plane.
 struct ChunkSteps {
   static constexpr std::size_t most = MaxLanes(DF());
   HWY_ALIGN float begin[most], each[most], last[most], count[most];
-  HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
-  HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
+  HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if this step is not in the chunk
+  HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if this is not in the chunk
   std::int64_t longest = 0;          ///< largest count
   bool some_enter = false;
 
@@ -154,12 +156,13 @@ struct ChunkSteps {
   }
 };
 
-/// Optical depth of a step, and its light before attenuation by what is in front of it.
+/// Optical depth of a step, and the light of the step before attenuation by what is in front of it.
 struct StepLight {
   VF depth, color[3];
 };
 
-/// A step with the constant scalar s and the length `extent` in k; empty where s is blank or lanes are not active.
+/// Returns a step with the constant scalar s and the length `extent` in k; empty where s is blank or lanes are not
+/// active.
 template <class Lookup>
 HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
   const DF d;
@@ -174,7 +177,7 @@ HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF leng
   StepLight light;
   light.depth = (kappa + kappa) * length;
   const VF opacity = one - Exp(d, Neg(light.depth));
-  // Independent emission: the mean transmittance of the step, 1 where it is thin.
+  // For independent emission: the mean transmittance of the step, which is 1 where the step is thin.
   const VF mean =
       IfThenElse(light.depth < Set(d, 1e-3f), NegMulAdd(Set(d, 0.5f), light.depth, one), opacity / light.depth);
   const VF weight = lookup.independent ? length * mean : opacity;
@@ -188,13 +191,13 @@ struct ScalarStep {
   VF front, back, length;
 };
 
-/// A step from the table; the shorter last step of a ray is integrated exactly.
+/// Returns a step from the table; the shorter last step of a ray is integrated exactly.
 template <class Lookup>
 HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, const ScalarStep& step,
                                         MF active, MF last) {
   const DF d;
   const VF front = step.front, back = step.back;
-  // Blank samples give NaN at either end.
+  // At blank samples, the scalar is NaN at either end.
   const MF good = And(active, And(back == back, front == front));
   VF found[4];
   look_up(table, IfThenElseZero(good, front), IfThenElseZero(good, back), found);
@@ -289,8 +292,8 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
   }
 }
 
-/// In a hidden chunk the field is not known. The ray carries a blank, so that its next step is invisible, as it would
-/// be with the field (visible_to_steps() in cell_ranges.hpp).
+/// In a hidden chunk the field is not known. The ray stores a blank instead, so that its next step is invisible, as it
+/// would be with the field (visible_to_steps() in cell_ranges.hpp).
 HWY_INLINE void skip_chunk(const ChunkView& chunk, TileRays& rays) {
   const auto lanes = static_cast<int>(hn::Lanes(DF()));
   for (int ray = 0; ray < TileRays::count; ray += lanes) {

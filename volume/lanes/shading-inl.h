@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blinn-Phong shading of stretches inside voxels. Included once per instruction set (Highway's include guard idiom).
 //
-// What      A stretch's own colour times ambient + diffuse |n l|, plus white light of specular |n h|^shininess per unit
-//           of its opacity. n is the direction of the field's gradient in the middle of the stretch, h halfway between
-//           light l and view.
-// How       With W from ShadingView, a world gradient is W^T g, its square g W W^T g, and its product with the light g
-//           W l. Therefore no world vectors are needed. Its product with the view is the field's change along the ray.
+// What      Computes a stretch's own colour times ambient + diffuse |n l|, plus white light of specular |n h|^shininess
+//           per unit of the stretch's opacity. n is the direction of the field's gradient in the middle of the stretch;
+//           h is halfway between light l and view.
+// How       With W from ShadingView, a world gradient is W^T g, the square of its length is g W W^T g, and its product
+//           with the light is g W l. Therefore no world vectors are needed. Its product with the view is the field's
+//           change along the ray.
 // Accuracy  Gradients include the rounding error of the samples (SlabBlock::rest); the error that remains is recorded.
 // Ends      Where the gradient is zero, the colour is unchanged and there is no specular light.
 
@@ -28,7 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// The factor of the field's own colour, and the white light added per unit of opacity.
+/// The factor for the field's own colour, and the white light that is added per unit of opacity.
 struct Lit {
   VF own, white;
   VF error;  ///< of light per unit of opacity, from rounding of the gradient
@@ -40,7 +41,7 @@ struct Gradient {
 
   /// The field's change along the ray, per slab.
   HWY_INLINE VF along(const Lanes& lanes) const { return MulAdd(lanes.bx, i, MulAdd(lanes.by, j, k)); }
-  /// Zero where it is NaN, and outside `lanes`.
+  /// Returns the gradient, with zeros where it is NaN and outside of `lanes`.
   HWY_INLINE Gradient kept(MF lanes) const {
     const auto finite = [&](VF v) HWY_ATTR { return IfThenElseZero(And(lanes, v == v), v); };
     return {finite(i), finite(j), finite(k)};
@@ -74,7 +75,7 @@ HWY_INLINE Lit shade(const FrameView& frame, const RayAxes& axes, const Gradient
   return {IfThenElse(flat, one, own), IfThenElseZero(Not(flat), shine), IfThenElseZero(Not(flat), error)};
 }
 
-/// Composites a stretch that was integrated separately behind the accumulated light.
+/// Composites a stretch that was integrated separately; it is placed behind the accumulated light.
 HWY_INLINE void put_behind(const Progress& part, const Lit& lit, Progress& progress) {
   const VF t = progress.transmittance;
   const auto color = [&](VF own, VF& sum)

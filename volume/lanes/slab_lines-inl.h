@@ -58,9 +58,10 @@ struct MirroredAxis {
   VF least, most;              ///< voxels of the volume
   VF sign;                     ///< +1, or -1 where mirrored
   VF origin;                   ///< lattice point 0, relative to the packet's i_base or j_base
-  VI step;                     ///< elements of the window from a lattice point to the next
+  VI step;                     ///< elements of the window from one lattice point to the next
 
-  /// For a ray at `place` + `change` k; `stride`: elements of the window between points before mirroring.
+  /// Sets up the axis for a ray at `place` + `change` k. `stride`: elements of the window between points before
+  /// mirroring.
   HWY_INLINE MirroredAxis(VF place, VF change, VF first, VF last, VF point_0, int stride) : origin(point_0) {
     const DF d;
     const VF one = Set(d, 1.0f);
@@ -81,7 +82,7 @@ struct MirroredLanes {
   MF live;
   VF slopes_product;
 
-  /// `columns` of the window.
+  /// `columns`: number of columns of the window.
   HWY_INLINE MirroredLanes(const Lanes& lanes, int columns)
       : i(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, lanes.i, 1),
         j(lanes.y, lanes.by, lanes.j_least, lanes.j_most, lanes.j, columns),
@@ -89,12 +90,12 @@ struct MirroredLanes {
         slopes_product(i.slope * j.slope) {}
 };
 
-/// The field in up to eight slabs; s[n] is the field at slab n's front plane.
+/// The field in up to eight slabs; `s` contains the field at each slab's front plane.
 struct SlabLines {
   static constexpr int most = 8;
   int first;  ///< the slab stored at index 0
   VF s[most + 1];
-  VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings, and the field there
+  VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< positions of the crossings, and the field there
   VF sag[most];                                   ///< sum of e^3 tau / 6
   VF bump[most];
   VF even[3][most], odd[3][most];  ///< for each stretch: e^2 tau, and the coefficient of the odd part of the cubic
@@ -105,7 +106,7 @@ struct SlabLines {
 struct Line {
   VF s_0, s_1, span, shift, rho;
 
-  /// Zero except in `lanes`.
+  /// Returns the line, with zeros except in `lanes`.
   HWY_INLINE Line kept(MF lanes) const {
     const auto keep = [&](VF v) HWY_ATTR { return IfThenElseZero(lanes, v); };
     return {keep(s_0), keep(s_1), keep(span), keep(shift), keep(rho)};
@@ -128,11 +129,12 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   return line;
 }
 
-/// Second-order properties of a slab's field, without the odd parts of its cubics. With r the deviation from the line
-/// (kinks and the cubics' even parts), m its mean, and u from 0 to 1:
-///   product     the integral of the field's square minus that of (line + m)'s, for products of functions linear in it,
-///   covariance  of r and u,
-///   odd         bound of the omitted parts.
+/// Second-order properties of a slab's field, without the odd parts of its cubics. Let r be the deviation from the line
+/// (kinks and the cubics' even parts), m the mean of r, and u the position from 0 to 1:
+///   product     the integral of the field's square minus that of the square of (line + m), for products of functions
+///               that are linear in the field,
+///   covariance  the covariance of r and u,
+///   odd         an upper bound of the omitted parts.
 struct Bend {
   VF product, covariance, odd;
 };
@@ -146,7 +148,7 @@ HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
   const VF r[4] = {zero, kink(u[1], lines.f_1[n]), kink(u[2], lines.f_2[n]), zero};
   VF mean = zero, square = zero, moment = zero, odd = zero;
   for (int k = 0; k < 3; ++k) {
-    // A chord from p to q plus a parabola of height b.
+    // The deviation is a chord from p to q plus a parabola of height b.
     const VF p = r[k], q = r[k + 1], b = number(-0.25) * lines.even[k][n];
     const VF e = u[k + 1] - u[k], middle = half * (u[k] + u[k + 1]), sum = p + q;
     const VF area = MulAdd(half, sum, number(2 / 3.0) * b);
@@ -171,10 +173,10 @@ struct WindowPlace {
   bool inner;
 };
 
-/// The voxels of the lanes at plane n of the chunk, in mirrored axes, and the positions in them.
+/// The voxels of the lanes at plane n of the chunk, in mirrored axes, and the lanes' positions in these voxels.
 struct VoxelAt {
   VF i, j;
-  VF part_i, part_j;  ///< from the voxel's corner, 0 to 1
+  VF part_i, part_j;  ///< position relative to the voxel's corner, 0 to 1
 
   HWY_INLINE VoxelAt(const MirroredLanes& lanes, const WindowPlace& place, int n) {
     const VF k = Set(DF(), static_cast<float>(n));
@@ -186,7 +188,7 @@ struct VoxelAt {
     }
     part_i = at_i - i, part_j = at_j - j;
   }
-  /// Their element in the window: i + columns j.
+  /// Index of the voxels in the window: i + columns j.
   template <class Window>
   HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place) const {
     const DF d;
@@ -206,15 +208,15 @@ struct SamplePair {
     return {to.a - from.a, to.b - from.b};
   }
   HWY_INLINE VF change() const { return b - a; }
-  /// Interpolated at u between the slices.
+  /// Returns the value at u, interpolated between the slices.
   HWY_INLINE VF at(VF u) const { return MulAdd(u, b - a, a); }
-  /// Moved by `part` of `step`.
+  /// Returns the pair plus `part` times `step`.
   HWY_INLINE SamplePair moved(VF part, const SamplePair& step) const {
     return {MulAdd(part, step.a, a), MulAdd(part, step.b, b)};
   }
 };
 
-/// The shape of the cubic over a stretch: tau in its middle, and D_pqk.
+/// The shape of the cubic over a stretch: tau in the middle of the stretch, and D_pqk.
 struct Curvature {
   VF tau, third;
 };
@@ -230,7 +232,8 @@ struct Slopes {
   VF p, q, product;
 };
 
-/// For a voxel whose samples differ by `near` along one axis and, one step further along the other axis, by `far`.
+/// Returns the curvature in a voxel. Its samples differ by `near` along one axis and, one step further along the other
+/// axis, by `far`.
 HWY_INLINE Curvature curvature(const Slopes& slope, const SamplePair& near, const SamplePair& far,
                                const SideDifferences& sides) {
   const VF d_pq = far.a - near.a, third = far.b - near.b - d_pq;
@@ -254,13 +257,13 @@ HWY_INLINE void set_stretches(VF u_1, VF u_2, VF slopes_product, const Curvature
   lines.sag[m] = Set(d, 1 / 6.0f) * sag;
   const VF most_even = Max(Max(Abs(even[0]), Abs(even[1])), Abs(even[2])),
            most_odd = Max(Max(Abs(odd[0]), Abs(odd[1])), Abs(odd[2]));
-  // NaN where any of them is NaN, because Max may drop NaN.
+  // The result is NaN where any of these is NaN, because Max may drop NaN.
   const VF all = odd[0] + odd[1] + (odd[2] + lines.sag[m]);
   lines.bump[m] = Set(d, 0.25f) * MulAdd(Zero(d), all, most_odd + most_even);
 }
 
-/// Stores the field of slab n of the chunk, except at its back plane, in `lines`. `voxels` counts, per lane, the voxels
-/// that live lanes visit.
+/// Stores the field of slab n of the chunk, except at the back plane, in `lines`. `voxels` counts, for each lane, the
+/// voxels that live lanes visit.
 template <class Window>
 HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
                           SlabLines& lines, VF& voxels) {
@@ -284,7 +287,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   VI step_p = IfThenElse(RebindMask(di, i_is_p), lanes.i.step, lanes.j.step),
      step_q = IfThenElse(RebindMask(di, i_is_p), lanes.j.step, lanes.i.step);
   VI at_00 = in.element<Window>(lanes, place);
-  // Lanes that are not live may be anywhere.
+  // Lanes that are not live may have any position.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
   if (gathers) at_00 = if_int(lanes.live, at_00);
   const VI at_10 = at_00 + step_p, at_01 = at_00 + step_q, at_11 = at_10 + step_q;

@@ -47,7 +47,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Error of a ray's position in voxels: its bound, and a bound for most rays.
+/// Error of a ray's position in voxels: an upper bound, and a bound that holds for most rays.
 constexpr float place_off = 2e-6f, place_mostly_off = 5e-7f;
 
 /// The range of a voxel's corners, and their largest magnitude.
@@ -68,7 +68,7 @@ struct CornerRange {
 struct VoxelStretch {
   VoxelField field;
   Corners corners;
-  VF begin, extent;  ///< in the slab
+  VF begin, extent;  ///< position and extent in the slab
   Piece piece;
   Cubic cubic;
   // The slab's path, the stretch in it, and the rounding errors of the slab's samples.
@@ -127,7 +127,7 @@ class SurfaceCast {
   }
 
  private:
-  /// The gap between two values that contains each lane's field.
+  /// For each lane, the gap between two values that contains the lane's field.
   struct Gap {
     VI number;
     VF low, high;
@@ -136,7 +136,7 @@ class SurfaceCast {
     return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + Set(DI(), 1))};
   }
 
-  /// Lanes whose field `s` is within the noise of a value that bounds the gap.
+  /// Returns lanes whose field `s` is within the noise of a value that bounds the gap.
   static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
     return And(lanes, Or(Abs(s - in.low) < noise, Abs(in.high - s) < noise));
   }
@@ -145,8 +145,8 @@ class SurfaceCast {
   struct LevelSide {
     MF any, across_i, across_j;
   };
-  /// Finds the level faces at the end u of lanes that are near a value there, and sets their field `s` to the exact
-  /// value.
+  /// Finds the level faces at the end u of a stretch, for lanes that are near a value there, and sets the field `s` of
+  /// these lanes to the exact value.
   HWY_NOINLINE LevelSide level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
     const DF d;
     const DI di;
@@ -204,7 +204,7 @@ class SurfaceCast {
           add_level(level_side(stretch, in, stretch.begin + stretch.extent, at_back, s_1), back);
           s_turn = IfThenElse(last, s_1, s_turn);
         }
-        // Recorded before the surface is added, which may hide the part behind it.
+        // This is recorded before the surface is added, because the surface may hide the part behind it.
         note(AndNot(And(last, back.any), near));
       }
       const MF up = s_turn >= s;
@@ -242,7 +242,7 @@ class SurfaceCast {
     side.across_i = Or(side.across_i, more.across_i), side.across_j = Or(side.across_j, more.across_j);
   }
 
-  /// Requests that lanes are cast again, if they are visible: adds their remaining light to the error bound.
+  /// Requests that these lanes are cast again, if they are visible, by adding their remaining light to the error bound.
   HWY_INLINE void note(MF unsure) {
     const VF seen = progress_.transmittance * Set(DF(), view_.brightest);
     notes_.error_bound = notes_.error_bound + IfThenElseZero(unsure, seen);
@@ -263,7 +263,8 @@ class SurfaceCast {
     MF lanes;
   };
 
-  /// The position near `at`, between v and `turn`, where the field equals a surface's value, given as level and rest.
+  /// Returns the position near `at`, between v and `turn`, where the field equals a surface's value, which is level +
+  /// rest.
   HWY_INLINE Place place_of(const VoxelStretch& stretch, VF v, VF turn, VF at, VF level, VF rest) const {
     VoxelField from_level = stretch.field;
     from_level.a00 = from_level.a00 - level - rest;
@@ -298,7 +299,7 @@ class SurfaceCast {
     return result;
   }
 
-  /// Squared lengths of world gradients: products with the metric, in the ray's axes.
+  /// Returns squared lengths of world gradients, computed as products with the metric in the ray's axes.
   HWY_INLINE VF square_of(const Gradient& g) const {
     const float flip = axes_.mirrored ? -1.0f : 1.0f;
     const auto times = [&](VF v, int a, int b, float by)
@@ -341,7 +342,7 @@ class SurfaceCast {
     note_surface(stretch, range, hit, steepness, hidden);
   }
 
-  /// Requests that lanes are cast again that meet a surface at the boundary to another voxel, where normals differ.
+  /// Requests that lanes are cast again if they meet a surface at the boundary to another voxel, where normals differ.
   /// Rays that keep_side() has moved off a plane are exempt.
   HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
     const DF d;
@@ -353,8 +354,8 @@ class SurfaceCast {
     note(Or(And(beside_i, near(stretch.field.x, lanes_.bx)), And(beside_j, near(stretch.field.y, lanes_.by))));
   }
 
-  /// Records the errors of a surface: of its normal, and of matter in front of it that may be behind it. `steepness` is
-  /// the gradient's length, `hidden` the light that the surface hides.
+  /// Records the errors of a surface: the error of its normal, and the error of matter in front of the surface that may
+  /// actually be behind it. `steepness` is the gradient's length, `hidden` the light that the surface hides.
   HWY_INLINE void note_surface(const VoxelStretch& stretch, const CornerRange& range, const Hit& hit, VF steepness,
                                VF hidden) {
     const DF d;
@@ -366,7 +367,7 @@ class SurfaceCast {
     const VF values = MulAdd(Set(d, 0x1p-24f), range.width, Set(d, view_.value_noise) * range.largest);
     const VF noise = MulAdd(aside, range.width, values);
     const VF per_slope = Set(d, 1.0f) / Max(Abs(place.slope), Set(d, 1e-30f));
-    // The error that remains of the initial position after two steps of Newton's method.
+    // The error of the initial position that remains after two steps of Newton's method.
     const VF guess = Set(d, 0x1p-22f) * range.largest * per_slope;
     const VF ratio = Min(guess * bend * per_slope, Set(d, 1.0f));
     const VF off = MulAdd(noise, per_slope, guess * (ratio * (ratio * ratio)));
@@ -394,7 +395,7 @@ class SurfaceCast {
     notes_.error_bound = MulAdd(error, hidden, notes_.error_bound);
   }
 
-  /// Adds the light of the stretch between positions `a` and `b`, where its field is s_a and s_b.
+  /// Adds the light of the stretch between positions `a` and `b`, where the field is s_a and s_b.
   HWY_NOINLINE void add_light(const VoxelStretch& stretch, VF a, VF b, VF s_a, VF s_b, MF lanes) {
     const DF d;
     const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);

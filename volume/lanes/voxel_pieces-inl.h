@@ -36,7 +36,7 @@ namespace HWY_NAMESPACE {
 /// The trilinear field of a lane's voxel along its ray: a + u c, where a and c are bilinear in (x, y).
 struct VoxelField {
   VF a00, ai, aj, aij, c00, ci, cj, cij;
-  VF x, y;  ///< at u = 0, from the voxel's corner
+  VF x, y;  ///< position at u = 0, relative to the voxel's corner
 
   HWY_INLINE VoxelField(const Corners& s, VF x_in, VF y_in) : x(x_in), y(y_in) {
     a00 = s.a00;
@@ -58,7 +58,7 @@ struct VoxelField {
   }
   /// The field at u = 0.
   HWY_INLINE VF at_front() const { return MulAdd(y, MulAdd(x, aij, aj), MulAdd(x, ai, a00)); }
-  /// The field at u = 1, where the ray is at (x_1, y_1), in the same coordinates as the voxel's corner (i, j).
+  /// Returns the field at u = 1, where the ray is at (x_1, y_1), in the coordinates of the voxel's corner (i, j).
   HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
     const VF fx = x_1 - i, fy = y_1 - j;
     const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
@@ -67,8 +67,8 @@ struct VoxelField {
   struct MiddleAndMean {
     VF middle, mean;
   };
-  /// The value at the middle u of a stretch of extent e, and the mean over the stretch: every product of two of x, y
-  /// and u adds a twelfth of the product of their changes. `ee` is e^2 / 12.
+  /// Returns the value at the middle u of a stretch of extent e, and the mean over the stretch: every product of two of
+  /// x, y and u adds a twelfth of the product of their changes. `ee` is e^2 / 12.
   HWY_INLINE MiddleAndMean middle_and_mean(VF u, VF ee, const Lanes& lanes) const {
     const VF fx = MulAdd(u, lanes.bx, x), fy = MulAdd(u, lanes.by, y);
     const VF a_y = MulAdd(fx, aij, aj), c_y = MulAdd(fx, cij, cj), c_x = MulAdd(fy, cij, ci);
@@ -79,7 +79,7 @@ struct VoxelField {
   }
 };
 
-/// The data that a packet's rays are cast with.
+/// The data with which a packet's rays are cast.
 template <class Lookup>
 struct PacketView {
   const FrameView& frame;
@@ -89,12 +89,13 @@ struct PacketView {
   CurrentInterval& current;
 };
 
-/// Rounding error of a position in slab n of the chunk, in slabs: that of numbers of this size.
+/// Returns the rounding error of a position in slab n of the chunk, in slabs: the rounding error of numbers of this
+/// size.
 HWY_INLINE VF place_noise(VF k) { return (k + Set(DF(), 2.0f)) * Set(DF(), 0x1p-24f); }
 
-/// Records the errors of a slab of point data due to rounding of the positions where rays begin and end in it. There is
-/// an excess or lack of the matter at its front (scalar line.s_0), with the slab's own light behind it, and of that at
-/// its back. `front_light` is the light accumulated in front of the slab.
+/// Records the errors of a slab of point data due to rounding of the positions where rays begin and end in the slab.
+/// Matter is in excess or missing at the slab's front (scalar line.s_0), with the slab's own light behind it, and at
+/// the slab's back. `front_light` is the light accumulated in front of the slab.
 template <class Lookup>
 HWY_NOINLINE void note_ends(const PacketView<Lookup>& packet, const Line& line, const SlabPath& path, MF there,
                             const Progress& front_light, RayState& rays) {
@@ -130,8 +131,8 @@ HWY_NOINLINE void note_ends(const PacketView<Lookup>& packet, const Line& line, 
   at(line.s_1, path.to < one, false);
 }
 
-/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`, with transmittance
-/// `before` at its front.
+/// Records the same errors for stretch n of cell data, which begins and ends at planes of its voxel. `piece` is the
+/// stretch; `before` is the transmittance at its front.
 template <class Lookup>
 HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& path, int n, const Piece& piece,
                               VF before, RayState& rays) {
@@ -175,11 +176,11 @@ HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& 
 /// The rounding errors of a slab's samples (SlabBlock::rest), for gradients.
 class RestOfSamples {
  public:
-  /// Of a window that begins at `front` and `back`.
+  /// `front` and `back` are the beginning of the window in both slices.
   HWY_INLINE RestOfSamples(const SlabBlock& block, const float* front, const float* back)
       : there_(block.has_rest), window_(block.rest_of(front), block.rest_of(back), block.pitch) {}
 
-  /// Adds their contribution to the gradient at u.
+  /// Adds the contribution of the rounding errors to the gradient at u.
   HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, Gradient& g) const {
     if (HWY_LIKELY(!there_)) return;
     const VoxelField rest(window_.corners(window_index(window_, path, stretch)), path.x - stretch.i,
@@ -200,7 +201,7 @@ struct SlabSamples {
   const RestOfSamples& rest;
 };
 
-/// Casts the `wanted` lanes voxel by voxel. `uniform` is the table's row if all are in one interval, else null.
+/// Casts the `wanted` lanes voxel by voxel. `uniform` is the table's row if all lanes are in one interval, else null.
 template <bool cell_data, class Window, class Lookup>
 HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& path,
                               const SlabSamples<Window>& samples, const UniformLookup* uniform, MF wanted,
@@ -268,22 +269,22 @@ HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& 
   }
 }
 
-/// Bound of the difference between a stretch's cubic and the chord between its ends: the height of the even part, and a
-/// quarter of the odd part's coefficient (ray_piece-inl.h).
+/// Returns an upper bound of the difference between a stretch's cubic and the chord between the ends of the stretch:
+/// the height of the even part, and a quarter of the odd part's coefficient (ray_piece-inl.h).
 HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
   const DF d;
   const VF even = NegMulAdd(Set(d, 0.5f), s_0 + s_1, middle);
   return MulAdd(Set(d, 0.25f), Abs(p_3), Abs(even));
 }
 
-/// The cubic at a stretch's other end, by Simpson's rule, which is exact: mean = (s_0 + 4 middle + s_1) / 6.
+/// Returns the cubic at a stretch's other end, by Simpson's rule, which is exact: mean = (s_0 + 4 middle + s_1) / 6.
 HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
   const DF d;
   return MulAdd(Set(d, 6.0f), mean, Set(d, -4.0f) * middle) - s;
 }
 
-/// Bound of the field's distance from the slab's line: at the borders of voxels, and of the bumps in between. NaN where
-/// the field is NaN.
+/// Returns an upper bound of the field's distance from the slab's line: that at the borders of voxels, and that of the
+/// bumps in between. NaN where the field is NaN.
 HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
   const VF borders = Max(Abs(border_1 - line_1), Abs(border_2 - line_2));
   const VF bumps = Max(Max(bump[0], bump[1]), bump[2]);
@@ -291,7 +292,8 @@ HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, con
   return MulAdd(Zero(DF()), any, borders + bumps);
 }
 
-/// The line of a slab that lanes may enter or leave anywhere. The result is arbitrary for lanes outside the slab.
+/// Returns the line of a slab that lanes may enter or leave anywhere. The result is arbitrary for lanes outside the
+/// slab.
 template <class Window>
 HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
   const DF d;
@@ -390,7 +392,7 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
   const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
   const VF place[4] = {zero, u_1, u_2, one};
-  // There is nothing behind a plane that is not crossed.
+  // A stretch behind a plane that is not crossed does not exist.
   const VF value[4] = {lines.s[m], IfThenElse(u_1 < one, lines.f_1[m], s_end),
                        IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
   SlabPieces slab;
@@ -419,9 +421,9 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
     add_any(packet.lookup, frame, piece, rays.light, rays.notes, rays.counts.samples);
 }
 
-/// For a slab, or a part of it, whose lanes are in several intervals or cross knots: adds the lanes that can be
-/// integrated as a line, and returns the others. `length`: of the lanes that are there; `begin`: in slabs from the
-/// chunk's first.
+/// Processes a slab, or a part of a slab, whose lanes are in several intervals or cross knots. Adds the lanes that can
+/// be integrated as a line, and returns the others. `length` is that of the lanes in the slab; `begin` is in slabs from
+/// the chunk's first slab.
 template <class Lookup>
 HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, MF there, VF begin, VF length,
                            RayState& rays) {

@@ -40,7 +40,8 @@ using scene::HWY_NAMESPACE::load_where;
 #endif
 using CL::VI;
 
-/// Samples at a voxel's corners: a in the front slice, b in the back slice; first digit along i, second along j.
+/// Samples at a voxel's corners: a in the front slice, b in the back slice. The first digit is the position along i,
+/// the second along j.
 struct Corners {
   VF a00, a10, a01, a11, b00, b10, b01, b11;
 };
@@ -49,7 +50,7 @@ struct Corners {
 
 HWY_INLINE MF within(VF v, VF low, VF high) { return And(v >= low, v < high); }
 
-/// 6 columns and 5 rows per slice, in two registers: sample (i, j) is element i + 6 j.
+/// A window of 6 columns and 5 rows per slice, in two registers. Sample (i, j) is element i + 6 j.
 class SmallWindow {
  public:
   static constexpr int columns = 6, rows = 5;
@@ -86,7 +87,7 @@ class SmallWindow {
   VF a_0_, a_1_, b_0_, b_1_;
 };
 
-/// 8 columns and 8 rows per slice, in four registers: sample (i, j) is element i + 8 j.
+/// A window of 8 columns and 8 rows per slice, in four registers. Sample (i, j) is element i + 8 j.
 class LargeWindow {
  public:
   static constexpr int columns = 8, rows = 8;
@@ -125,13 +126,14 @@ class LargeWindow {
 
 #endif  // HWY_TARGET <= HWY_AVX3
 
-/// Any width, from memory.
+/// A window of any width, which is read from memory.
 class GatherWindow {
  public:
-  static constexpr int columns = 1, rows = 1;  ///< the part that must be in the block from where the window begins
+  /// Columns and rows, from where the window begins, that must be in the block.
+  static constexpr int columns = 1, rows = 1;
 
   HWY_INLINE GatherWindow(const float* a, const float* b, std::ptrdiff_t pitch) : a_(a), b_(b), pitch_(pitch) {}
-  /// Always false: the test would take as long as the integration.
+  /// Returns false, because the test would take as long as the integration.
   HWY_INLINE bool all_in(float, float) const { return false; }
   HWY_INLINE VI index(VF i, VF j) const { return ConvertTo(DI(), MulAdd(j, Set(DF(), static_cast<float>(pitch_)), i)); }
   HWY_INLINE VF front(VI index) const { return GatherIndex(DF(), a_, index); }

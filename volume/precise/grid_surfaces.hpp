@@ -14,16 +14,16 @@ namespace tessera::volume {
 /// The iso-surfaces of a frame of a grid with point data, and the cells of 8^3 voxels that contain them.
 class GridSurfaces {
  public:
-  /// No surfaces.
+  /// Makes an object without surfaces.
   GridSurfaces() = default;
-  /// The surfaces must be valid. Without a grid: any cell may contain them.
+  /// The surfaces must be valid. Without the ranges of a grid, any cell may contain surfaces.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function)
       : set_(surfaces, function), any_(!set_.empty()) {}
-  /// For a grid with these ranges.
+  /// For a grid whose cells have these ranges.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function, const CellRanges& ranges);
 
   [[nodiscard]] const scene::SurfaceSet& set() const { return set_; }
-  /// One byte per cell (cell_ranges.hpp): 1 where the field may cross a surface's value. Empty: any cell may contain
+  /// One byte per cell (cell_ranges.hpp): 1 where the field may cross a surface's value. If empty, any cell may contain
   /// surfaces.
   [[nodiscard]] std::span<const std::uint8_t> holding() const { return holding_; }
   /// Whether any cell may contain surfaces.

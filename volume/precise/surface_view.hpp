@@ -9,7 +9,7 @@
 
 namespace tessera::volume {
 
-/// The iso-surfaces of a frame as data for the kernels (surface_pieces-inl.h).
+/// The iso-surfaces of a frame in the form that the kernels need (surface_pieces-inl.h).
 ///
 /// Edges     Edge 0 is below every value, edges 1 to `count` are the surfaces' values in ascending order, and edge
 ///           count + 1 is above all values. A field in gap n is at or above edge n, and below edge n + 1.
@@ -21,7 +21,7 @@ struct SurfaceView {
   std::vector<float> red, green, blue, opacity;
   std::vector<float> angle_weight;  ///< upper bound of the change of light per radian between normal and ray
   float ambient = 0, diffuse = 0, specular = 0, shininess = 0;
-  int whole_shininess = -1;  ///< -1: not an integer, or a large one
+  int whole_shininess = -1;  ///< the shininess if it is a small integer, otherwise -1
   float noise = 0;           ///< error of the field in float lanes, anywhere in the volume, in lane scalars
   float brightest = 1;       ///< upper bound of the light or opacity along a ray
   bool any_exact = false;

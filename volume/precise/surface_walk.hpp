@@ -24,22 +24,22 @@ struct SurfaceCrossing {
 /// Finds the crossings of rays and iso-surfaces of a grid with point data, in double precision, for regular and
 /// rectilinear grids. For one thread.
 ///
-/// Places    All roots of the cubic that the trilinear field is along a ray in a voxel, where it changes between below
-///           the value and at or above the value, in order along the ray. Voxels that share a face compute the same
-///           bits there, and the sign of the field relative to a value follows from its samples: weights are exact at
-///           lattice planes, and sums of products keep their sign. Therefore no crossing is lost or found twice between
-///           voxels, and none is found where all samples are on one side.
+/// Places    Crossings are the roots of the cubic that the trilinear field is along a ray in a voxel: all roots where
+///           the field changes between below the value and at or above the value, in order along the ray. Voxels that
+///           share a face compute the same bits there, and the sign of the field relative to a value follows from the
+///           voxel's samples: weights are exact at lattice planes, and sums of products keep their sign. Therefore no
+///           crossing is lost or found twice between voxels, and none is found where all samples are on one side.
 /// Cut       Where a ray begins or ends in a clip plane, a field within 1e-10 of a surface's value counts as equal to
-///           it, as tessera/selection.hpp specifies for meshes.
-/// Normal    The trilinear field's gradient; where it is zero, the surface is assumed to face the eye.
+///           the value, as tessera/selection.hpp specifies for meshes.
+/// Normal    The normal is the trilinear field's gradient; where it is zero, the surface is assumed to face the eye.
 /// Blank     Voxels with a blank corner have no surface, nor do their faces.
-/// Skips     Cells of 8^3 voxels without any of the values (GridSurfaces::holding).
+/// Skips     Cells of 8^3 voxels that contain none of the values (GridSurfaces::holding) are skipped.
 class SurfaceWalk {
  public:
-  /// Both must outlive it.
+  /// `source` and `surfaces` must outlive this object.
   SurfaceWalk(const scene::SampleSource& source, const GridSurfaces& surfaces);
 
-  /// Appends the crossings of a ray, and stops where the transmittance of the surfaces alone is below `least`. Returns
+  /// Appends the crossings of a ray. Stops where the transmittance of the surfaces alone is below `least`; returns
   /// whether it stopped.
   bool find(const VoxelRay& ray, double least, std::vector<SurfaceCrossing>& found);
 

@@ -36,9 +36,9 @@ struct VoxelCastCounts {
 /// The accumulated light of a ray, in double precision.
 struct RaySum {
   double red = 0, green = 0, blue = 0, optical_depth = 0, transmittance = 1;
-  double first = std::numeric_limits<double>::infinity();  ///< planar depth at which it begins
+  double first = std::numeric_limits<double>::infinity();  ///< planar depth at which the light begins
 
-  /// `bound`: value of RayFragment::error_bound.
+  /// `bound` is the value for RayFragment::error_bound.
   [[nodiscard]] RayFragment fragment(int x, int y, double z_back, float bound) const;
 };
 
@@ -47,10 +47,10 @@ struct RaySum {
 /// whose light in float lanes is uncertain (lane_error_bound.hpp). Surfaces are inserted between the parts of rays that
 /// they separate.
 ///
-/// Error     Below 1e-5 for any spacings, plus what the walk may omit (WalkSettings::tolerance, least).
+/// Error     Below 1e-5 for any spacings, plus what the walk may omit (WalkSettings::tolerance, WalkSettings::least).
 /// Bits      The bits of a ray depend only on the ray and on where it is divided.
-/// Threads   Any number may use one caster. Source, function and the objects that the settings refer to must outlive
-///           it.
+/// Threads   Any number of threads may use one caster. Source, function and the objects that the settings refer to must
+///           outlive the caster.
 class VoxelCaster {
  public:
   /// Camera and size must be valid.
@@ -60,16 +60,16 @@ class VoxelCaster {
   VoxelCaster(const VoxelCaster&) = delete;
   VoxelCaster& operator=(const VoxelCaster&) = delete;
 
-  /// The ray through a pixel's centre.
+  /// Returns the ray through a pixel's centre.
   [[nodiscard]] VoxelRay ray(int x, int y) const;
-  /// The part of a ray in a chunk. Chunks that share a plane compute the same depth for it.
+  /// Returns the part of a ray in a chunk. Chunks that share a plane compute the same depth for this plane.
   [[nodiscard]] VoxelRay part_in(const VoxelBox& chunk, const VoxelRay& ray) const;
-  /// Adds the light along `ray` behind that in `sum`; does nothing if the ray is empty.
+  /// Adds the light along `ray` behind the light in `sum`; does nothing if the ray is empty.
   void add(const VoxelRay& ray, RaySum& sum);
 
-  /// Casts the parts in `part` of the rays of a region's pixels, in rectangles of 32x32, which are reported to the sink
-  /// when finished. Throws scene::FrameStopped after a request on `stop`. Uses the calling thread's arena, like cast()
-  /// below.
+  /// Casts the rays of a region's pixels, limited to `part`, in rectangles of 32x32 pixels, which are reported to the
+  /// sink when they are finished. Throws scene::FrameStopped after a request on `stop`. Uses the calling thread's
+  /// arena, like cast() below.
   void cast(const VoxelBox& part, const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop = {});
   void cast(std::span<const UncertainRay> rays, FragmentSink& sink, const std::stop_token& stop = {});
 
@@ -80,7 +80,8 @@ class VoxelCaster {
   std::unique_ptr<State> state_;
 };
 
-/// Upper bound of the lattice planes that a ray crosses: the cost of casting its pixel if everything is visible.
+/// Returns an upper bound of the number of lattice planes that a ray crosses. This is the cost of casting the ray's
+/// pixel if everything is visible.
 double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry);
 
 }  // namespace tessera::volume

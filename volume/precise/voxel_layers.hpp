@@ -26,9 +26,9 @@ struct VoxelLayersSettings {
   const GridSurfaces* surfaces = nullptr;  ///< null: no surfaces
 };
 
-/// The layers of a grid's rays (integrals/ray_layers.hpp), along a VoxelWalk in double precision, for regular and
-/// rectilinear grids with point or cell data. For one thread. A ray continues behind opaque matter until its last layer
-/// is opaque too, or until it ends.
+/// Computes the layers of a grid's rays (integrals/ray_layers.hpp), along a VoxelWalk in double precision, for regular
+/// and rectilinear grids with point or cell data. An object may be used by one thread only. A ray continues behind
+/// opaque matter until its last layer is opaque, too, or until the ray ends.
 class VoxelLayers final : public WalkSink {
  public:
   /// Source, function and surfaces must outlive it.
@@ -57,7 +57,7 @@ class VoxelLayers final : public WalkSink {
   std::optional<SurfaceWalk> surfaces_;
   std::vector<SurfaceCrossing> crossings_;
   integrals::SegmentBatch batch_;
-  std::vector<integrals::RayLayers::Stretch> stretches_;  ///< of the batch
+  std::vector<integrals::RayLayers::Stretch> stretches_;  ///< one for each element of the batch
   const VoxelRay* ray_ = nullptr;
   VoxelLight light_;
   integrals::OpenLayer open_;

@@ -18,8 +18,9 @@ namespace tessera::volume {
 struct VoxelRay {
   glm::dvec3 origin, step;
   double length_per_depth, begin, end;
-  glm::dvec3 aside{0};  ///< offset of a ray in a lattice plane into the voxels to which it belongs
-  double begin_cut = nowhere, end_cut = nowhere;  ///< `begin` or `end`, if it is in a clip plane
+  glm::dvec3 aside{0};  ///< moves a ray that is in a lattice plane into the voxels to which the ray belongs
+  /// Equal to `begin` or `end` if that is in a clip plane; otherwise NaN.
+  double begin_cut = nowhere, end_cut = nowhere;
 
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 };
@@ -28,13 +29,13 @@ struct VoxelRay {
 class VoxelRays {
  public:
   /// Camera and size must be valid. Rays are clipped to the half-spaces of `clip`. A ray in a clip plane belongs to the
-  /// side that it would be on if it were shifted as in ray().
+  /// side on which it would be if it were shifted as in ray().
   VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
             std::span<const scene::HalfSpace> clip = {});
 
-  /// The ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). A ray in a lattice
-  /// plane has the values of that plane, and belongs to the voxels that it would be in if it were shifted by (e, e^2)
-  /// pixels for an infinitesimal e.
+  /// Returns the ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). A ray in a
+  /// lattice plane has the values of that plane, and belongs to the voxels in which it would be if it were shifted by
+  /// (e, e^2) pixels for an infinitesimal e.
   [[nodiscard]] VoxelRay ray(double x, double y) const;
 
  private:
@@ -47,7 +48,7 @@ class VoxelRays {
   bool perspective_;
   double width_, height_, pixel_;
   double deepest_ = 0;                  ///< upper bound of the planar depths of the volume's corners
-  std::vector<scene::HalfSpace> clip_;  ///< unit normals
+  std::vector<scene::HalfSpace> clip_;  ///< with unit normals
 };
 
 }  // namespace tessera::volume

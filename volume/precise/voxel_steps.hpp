@@ -9,7 +9,7 @@
 
 namespace tessera::volume {
 
-/// The voxel along an axis that contains a position in the local frame, or the nearest one.
+/// Returns the voxel along an axis that contains a position in the local frame, or the nearest voxel.
 std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, double local);
 
 /// A ray's path from voxel to voxel, front to back:
@@ -21,7 +21,7 @@ std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, 
 /// several planes are passed at once, because of rounding or at an edge, stretches of zero length occur in between.
 class VoxelSteps {
  public:
-  /// Both must outlive it.
+  /// `geometry` and `ray` must outlive this object.
   VoxelSteps(const scene::GridGeometry& geometry, const VoxelRay& ray);
 
   [[nodiscard]] bool inside() const { return begin_ < ray_.end; }
@@ -29,7 +29,7 @@ class VoxelSteps {
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return end_; }
   void step();
-  /// Advances to where the ray leaves the voxels low <= (i, j, k) < high, which contain the current one.
+  /// Advances to where the ray leaves the voxels low <= (i, j, k) < high, which contain the current voxel.
   void leave(const scene::GridIndex& low, const scene::GridIndex& high);
 
  private:

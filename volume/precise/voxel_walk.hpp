@@ -21,32 +21,35 @@ namespace tessera::volume {
 struct VoxelStretch {
   double z0, z1;
   std::array<double, 8> corner;
-  glm::dvec3 front, rise, side;  ///< side: of the voxel, world units along the grid's axes
+  glm::dvec3 front, rise, side;  ///< `side`: size of the voxel, in world units along the grid's axes
 };
 
 /// Receives the results of a walk, front to back.
 class WalkSink {
  public:
   virtual ~WalkSink() = default;
-  /// The ray enters a voxel in which something is visible.
+  /// Called when the ray enters a voxel in which something is visible.
   virtual void enter(const VoxelStretch& stretch) = 0;
-  /// The scalar in this voxel is linear between planar depths z0 and z1, within one interval of the transfer function,
-  /// from knot number k_0 to k_1. Number n + t is at the fraction t in [0, 1] between knots n = 0, 1, ... and n + 1.
-  /// The function is constant below 0 and from the last number on. These numbers keep the position of scalars between
-  /// knots whose distance is much smaller than their values. over_knot_numbers() is the function of them.
+  /// Called for a stretch between planar depths z0 and z1 on which the scalar is linear and within one interval of the
+  /// transfer function. k_0 and k_1 are the scalars at its ends, expressed as knot numbers: number n + t is at the
+  /// fraction t in [0, 1] between knots n = 0, 1, ... and n + 1. The function is constant below 0 and from the last
+  /// number on. Knot numbers keep the position of scalars between knots whose distance is much smaller than their
+  /// values. over_knot_numbers() is the function of knot numbers.
   virtual void line(double z0, double z1, double k_0, double k_1) = 0;
-  /// Upper bound of the transmittance so far; below `least` the walk ends.
+  /// Upper bound of the transmittance so far; the walk ends if it is below `least`.
   [[nodiscard]] virtual double transmittance() const = 0;
 };
 
-/// The transfer function with its knots moved to 0, 1, 2 and so on; the two knots of a step have different numbers.
+/// Returns the transfer function with its knots moved to 0, 1, 2 and so on; the two knots of a step have different
+/// numbers.
 scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function);
 
 struct WalkSettings {
   scene::Emission emission = scene::Emission::absorption;
   double tolerance = 2e-9;  ///< largest error, in linear RGBA, of replacing a stretch by a line
   double least = 0;         ///< transmittance at which the walk ends
-  /// One byte for each cell of 8^3 voxels (cell_ranges.hpp): whether any of it is visible; empty: any cell may be.
+  /// One byte for each cell of 8^3 voxels (cell_ranges.hpp): whether any part of the cell is visible. If empty, any
+  /// cell may be visible.
   std::span<const std::uint8_t> visible = {};
 };
 
@@ -61,7 +64,7 @@ class VoxelWalk {
 
   void walk(const VoxelRay& ray, WalkSink& sink);
 
-  /// Counted since construction.
+  /// These counts start at construction.
   struct Counts {
     std::uint64_t voxels = 0, blocks_read = 0, bytes_read = 0;
   };
@@ -85,7 +88,7 @@ class VoxelWalk {
   std::vector<scene::Knot> knots_;
   bool independent_;
   double origin_ = 0;     ///< scalars in the current voxel are relative to this value
-  double last_knot_ = 0;  ///< last knot crossed, relative to it
+  double last_knot_ = 0;  ///< last knot that was crossed, relative to `origin_`
   std::uint64_t voxels_ = 0;
 };
 

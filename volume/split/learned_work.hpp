@@ -11,8 +11,8 @@
 
 namespace tessera::volume {
 
-/// Coarse cells of a volume: cubes whose side is the smallest of 8, 16, 32, ... voxels for which there are at most
-/// 2^15.
+/// Coarse cells of a volume. They are cubes whose side is the smallest of 8, 16, 32, ... voxels for which there are at
+/// most 2^15 cells.
 struct WorkCells {
   std::int64_t side = 8;
   scene::GridIndex cells{0, 0, 0};
@@ -29,13 +29,13 @@ struct WorkCells {
   bool operator==(const WorkCells&) const = default;
 };
 
-/// Counts the caster's work by the cell in which it occurs. Any number of threads may add.
+/// Counts the caster's work separately for each cell in which it occurs. Any number of threads may add work.
 class WorkTally {
  public:
   explicit WorkTally(const scene::GridIndex& voxels) : cells_(voxels), words_(2 * cells_.count()) {}
 
-  /// Adds a packet's path through a cell: the samples (pieces) taken, the slabs crossed (one layer of voxels along one
-  /// ray each), and the optical depth over the length of a slab, summed over rays.
+  /// Adds a packet's path through a cell: the samples (pieces) that it took, the slabs that it crossed (a slab is one
+  /// layer of voxels along one ray), and the optical depth over the length of a slab, summed over rays.
   void add(std::size_t cell, std::uint64_t samples, float slabs, float depth) {
     words_[2 * cell].fetch_add(samples | static_cast<std::uint64_t>(slabs * slab_units) << 32,
                                std::memory_order_relaxed);
@@ -53,14 +53,14 @@ class WorkTally {
   std::vector<std::atomic<std::uint64_t>> words_;
 };
 
-/// Work rates estimated from tallies. The rates of cells that few rays met are drawn towards those of the larger cubes
+/// Work rates estimated from tallies. The rates of cells that few rays met are moved towards those of the larger cubes
 /// that contain them.
 class WorkRates {
  public:
   explicit WorkRates(const scene::GridIndex& voxels) : cells_(voxels), rates_(cells_.count()) {}
 
-  /// Adds a tally to the sums of earlier frames, after reducing these by a quarter: a cell's work changes with the
-  /// direction of the rays.
+  /// Adds a tally to the sums of earlier frames. These sums are first reduced by a quarter, because a cell's work
+  /// changes with the direction of the rays.
   static void add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums);
 
   /// Estimates the rates from the words of WorkTally::take(), summed over ranks.
@@ -69,7 +69,7 @@ class WorkRates {
   [[nodiscard]] const WorkCells& cells() const { return cells_; }
   /// Samples per slab of one ray in the cell.
   [[nodiscard]] double samples(std::size_t cell) const { return rates_[cell].samples; }
-  /// Optical depth per unit of length (the caster's) in the cell.
+  /// Optical depth in the cell per unit of the caster's length.
   [[nodiscard]] double depth(std::size_t cell) const { return rates_[cell].depth; }
 
  private:

@@ -14,8 +14,8 @@ struct TilePlace {
   std::size_t region;  ///< index of the region whose pixels are rendered
 };
 
-/// The tiles that have pixels in the regions, for each region separately, sorted along a Z-order curve so that
-/// neighbouring tiles find each other's bricks in the cache.
+/// Returns the tiles that have pixels in the regions, separately for each region. They are sorted along a Z-order
+/// curve, so that the bricks that a tile needs are likely to be in the cache from its neighbours.
 std::vector<TilePlace> tiles_of(std::span<const scene::PixelRect> regions);
 
 }  // namespace tessera::volume

@@ -8,7 +8,7 @@
 
 namespace tessera::volume {
 
-/// The voxels low <= (i, j, k) < high of a grid: a chunk of it.
+/// The voxels low <= (i, j, k) < high of a grid.
 struct VoxelBox {
   scene::GridIndex low, high;
 
