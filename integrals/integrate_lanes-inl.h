@@ -46,12 +46,12 @@ struct Light {
 namespace lanes {
 
 constexpr float opaque_depth = 20.0f;  // exp(-20) = 2e-9
-constexpr float most_depth = 1e15f;    // bound of the optical depth of a piece that is cut: its squares remain finite
-constexpr float most_length = 1e18f;   // bound of lengths: finite if multiplied by the largest number in a table
-constexpr float step_depth = 1.0f;     // the range of the polynomials
+constexpr float most_depth = 1e15f;    // most optical depth of a piece that is cut: its squares remain finite
+constexpr float most_length = 1e18f;   // most length: products with the largest number in a table remain finite
+constexpr float step_depth = 1.0f;     // the range in which the polynomials are valid
 constexpr int pieces_a_fold = 16;
 
-/// c[0] + c[1] x + ...
+/// Returns c[0] + c[1] x + ...
 template <std::size_t count>
 HWY_INLINE VF polynomial(VF x, const float (&c)[count]) {
   const DF d;
@@ -63,11 +63,11 @@ HWY_INLINE VF polynomial(VF x, const float (&c)[count]) {
 /// A stretch without knots, of at most about one optical depth.
 struct Stretch {
   VF depth_front, depth_back;  ///< half the extinction at each end times the stretch's length: a / 2 and e / 2 above
-  VF from, span;               ///< scalar at its front relative to the interval's base, and the change to its back
+  VF from, span;  ///< scalar at the front relative to the interval's base, and change of the scalar from front to back
   VF length;
 };
 
-/// The light of a stretch: start * weight + slope * moment.
+/// The light of a stretch is start * weight + slope * moment.
 struct StretchLight {
   VF alpha, weight, moment;
 };
@@ -110,13 +110,13 @@ HWY_INLINE StretchLight stretch_light(const Stretch& s, bool independent) {
   return light;
 }
 
-/// The sums of a lane so far.
+/// What a lane has accumulated so far.
 struct Progress {
   VF alpha, transmittance, optical_depth, red, green, blue;
 };
 
-/// The rest of a piece, the opacity and transmittance accumulated in front of it, and the sums over the piece so far,
-/// attenuated by what is in front of them.
+/// The rest of a piece, the opacity and transmittance accumulated in front of this rest, and the sums over the piece so
+/// far, attenuated by what is in front of them.
 struct Passage {
   Stretch rest;
   VF alpha, transmittance, weight, moment;
@@ -131,9 +131,9 @@ HWY_INLINE void add_stretch(bool independent, Passage& p) {
   p.transmittance = p.transmittance - hidden;
 }
 
-/// Integrates steps of one optical depth from the front of thick lanes, until at most one is left or the rest is
-/// invisible. Other lanes are not changed. Passed by value, because a reference would keep the caller's variables in
-/// memory.
+/// Integrates steps of one optical depth from the front of thick lanes, until at most one optical depth is left or the
+/// rest is invisible. Other lanes are not changed. `p` is passed by value, because a reference would keep the caller's
+/// variables in memory.
 HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage p) {
   const DF d;
   const VF one = Set(d, 1.0f), zero = Zero(d), bound = Set(d, step_depth), most = Set(d, most_depth);
@@ -141,9 +141,10 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = IfThenElse(thick, rest, x); };
   cut(p.rest.depth_front, Min(p.rest.depth_front, most));
   cut(p.rest.depth_back, Min(p.rest.depth_back, most));
-  constexpr int most_steps = 64;  // each step transmits at most exp(-1), so 21 steps leave a negligible rest
+  constexpr int most_steps = 64;  // each step transmits at most exp(-1), so a negligible rest is left after 21 steps
   for (int n = 0; n < most_steps && !AllFalse(d, thick); ++n) {
-    // With halved depths q(u) = 2 a u + (e - a) u^2. u solves q(u) = bound in the form without cancellation.
+    // With halved depths, q(u) = 2 a u + (e - a) u^2. u is the solution of q(u) = bound, in the form without
+    // cancellation.
     Stretch& s = p.rest;
     const VF a = s.depth_front, rise = s.depth_back - a;
     const VF root = Sqrt(Max(zero, MulAdd(a, a, bound * rise)));
@@ -161,7 +162,7 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
     cut(s.from, s.from + step.rest.span);
     cut(s.span, s.span * left);
     cut(s.length, s.length * left);
-    // A lane through which nothing is visible is finished: an empty stretch adds nothing.
+    // A lane through which nothing is visible is finished: its stretch becomes empty, which adds nothing.
     const MF dark = And(thick, p.transmittance < transmittance_left);
     for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = IfThenElse(dark, zero, *x);
     thick = And(thick, s.depth_front + s.depth_back > bound);
@@ -174,8 +175,9 @@ struct LinearPiece {
   VF front, back, span, length;
 };
 
-/// Adds the light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. There
-/// is nothing in front of the `first` piece: its numbers are the same, without products with one and sums with zero.
+/// Adds the light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing.
+/// `first` states that there is nothing in front of the piece: results are the same, without products with one and sums
+/// with zero.
 template <bool first, class Lookup>
 HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, const LinearPiece& piece,
                           Progress& so_far) {
@@ -229,14 +231,14 @@ struct Walk {
   VI interval;
   VF scalar, back, length_per_scalar;
 
-  /// The next knot or the segment's end, whichever comes first.
+  /// Returns the position of the next knot or of the segment's end, whichever comes first.
   template <class Lookup>
   HWY_INLINE VF target(const Lookup& table, const typename Lookup::Index& index) const {
     const VF knot = table.edge(interval, index, up);
     return IfThenElse(up, Min(knot, back), Max(knot, back));
   }
 
-  /// Integrates at most `most` pieces behind the knot at `scalar`.
+  /// Integrates at most `most` pieces, beginning at the knot at `scalar`.
   template <class Lookup>
   HWY_INLINE void go_on(const Lookup& table, int most, Progress& so_far) {
     const DF d;
@@ -256,8 +258,8 @@ struct Walk {
   }
 };
 
-/// The rest of a walk with more than pieces_a_fold pieces. Long float sums drift, so it adds partial sums of few
-/// pieces.
+/// Integrates the rest of a walk with more than pieces_a_fold pieces. Long float sums drift, so it adds partial sums of
+/// few pieces.
 template <class Lookup>
 HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
   const DF d;
@@ -277,9 +279,9 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 }  // namespace lanes
 
 /// integrate_lanes() in straight-line code, for the most frequent segments: those in one interval that are at most
-/// step_depth thick. It gives the same bits. `interval`: table.locate(front, back >= front). `more`: the lanes of
-/// nonzero length whose segment does not meet these conditions, and whose result is invalid. Lanes of zero length may
-/// hold any finite numbers; their result is zero.
+/// step_depth thick. The bits are the same. `interval` must be table.locate(front, back >= front). `more` is set to the
+/// lanes of nonzero length whose segment does not meet these conditions; their result is invalid. Lanes of zero length
+/// may contain any finite numbers; their result is zero.
 template <bool independent, TableForm form>
 HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
@@ -303,8 +305,8 @@ HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF len
   return {light.alpha, depth, color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
 }
 
-/// The integral over one segment per lane. `length` in the table's unit, >= 0; `front` and `back` as returned by
-/// lane_scalar(). All finite where `active`; other lanes may hold anything, and their result is zero.
+/// Integrates one segment per lane. `length` is in the table's unit, >= 0; `front` and `back` are results of
+/// lane_scalar(). All must be finite where `active`; other lanes may contain any numbers, and their result is zero.
 template <TableForm form>
 HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front, VF back, MF active) {
   const DF d;

@@ -2,11 +2,11 @@
 // Access to a LaneTable from float lanes. Included once per instruction set (Highway's include guard idiom).
 //
 // What      Finds the interval of the transfer function that contains each lane's scalar, and the table's numbers for
-//           it.
+//           this interval.
 // How       Columns of few knots are kept in one or two vectors, and a permutation looks up all lanes. Longer columns
-//           stay in memory: usually two vectors around the first lane's interval contain all lanes' entries, otherwise
-//           they are gathered. Intervals are found by a uniform grid, or by comparing some knots, followed by a binary
-//           search.
+//           stay in memory. Usually two vectors around the first lane's interval contain the entries of all lanes;
+//           otherwise the entries are gathered. Intervals are found by a uniform grid, or by comparing some knots,
+//           followed by a binary search.
 // Bits      All forms of the table give the same results.
 
 #if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -37,7 +37,7 @@ using scene::HWY_NAMESPACE::truncated;
 using scene::HWY_NAMESPACE::VF;
 using scene::HWY_NAMESPACE::VI;
 
-/// Where the table's rows are stored: each in one vector, each in two, or in memory.
+/// Where the table's rows are stored: each row in one vector, each in two vectors, or in memory.
 enum class TableForm { one_vector, two_vectors, many };
 
 HWY_INLINE TableForm form_of(const LaneTable& table) {
@@ -45,11 +45,13 @@ HWY_INLINE TableForm form_of(const LaneTable& table) {
   return edges <= lanes ? TableForm::one_vector : edges <= 2 * lanes ? TableForm::two_vectors : TableForm::many;
 }
 
-/// Looks up intervals by lane. Every form provides:
-///   locate(s, up)    the interval that a ray at s enters: the number of knots at or below s where `up`, else below s;
+/// Looks up intervals for each lane. Every form provides:
+///   locate(s, up)    the interval that a ray at s enters: the number of knots at or below s where `up` is set, else of
+///                    those below s;
 ///   index(i, active) the intervals prepared for lookups; only those of active lanes need to be valid;
-///   at(column, index), and edge(i, index, upper) for an end of the interval: the upper end where `upper` is 1 or true;
-///   most_pieces      upper bound of the pieces of a segment.
+///   at(column, index)  the table's numbers in these intervals;
+///   edge(i, index, upper)  an end of each interval: the upper end where `upper` is 1 or true;
+///   most_pieces      upper bound of the number of pieces of a segment.
 template <TableForm form>
 class Lookup;
 
@@ -63,8 +65,8 @@ HWY_INLINE VI count_if(MF mask, VI count) {
 #endif
 }
 
-/// The next float above s in lanes of `up`, else s. A knot is below the next float if it is at or below s, so one
-/// comparison serves both directions.
+/// Returns the next float above s in lanes of `up`, else s. A knot is less than the next float if it is at or below s,
+/// so one comparison serves both directions.
 HWY_INLINE VF past(VF s, MF up) {
   const DF d;
   const DI di;
@@ -73,7 +75,8 @@ HWY_INLINE VF past(VF s, MF up) {
   return BitCast(d, IfThenElse(RebindMask(di, up), bits + away, bits));
 }
 
-/// Adds to `passed` the number of further knots below s, by a binary search of the edges: edge_at(i) returns edge[i].
+/// Adds to `passed` the number of further knots below s, by a binary search of the edges. edge_at(i) must return
+/// edge[i].
 template <class EdgeAt>
 HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge_at) {
   const DI di;
@@ -106,7 +109,7 @@ struct Landmarks {
   }
   float value[count];
   int stride_bits;
-  std::size_t first_step;  ///< of the search between two landmarks
+  std::size_t first_step;  ///< first step of the search between two landmarks
 };
 
 template <>
@@ -121,7 +124,8 @@ class Lookup<TableForm::one_vector> {
     const DF d;
     const DI di;
     for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = LoadU(d, table.column(c));
-    // A grid of few cells with at most one knot per cell is also kept in registers: half the work of comparing knots.
+    // A grid of few cells with at most one knot per cell is also kept in registers; it takes half the work of comparing
+    // knots.
     const std::size_t lanes = hn::Lanes(di), cells = table.knots_before.size();
     in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
     if (!in_registers_) return;
@@ -159,7 +163,7 @@ class Lookup<TableForm::one_vector> {
   Landmarks landmarks_;
   VF rows_[LaneTable::column_count];
   bool in_registers_;
-  VF low_cells_, high_cells_;  ///< number of knots in lower cells, stored as the bits of floats
+  VF low_cells_, high_cells_;  ///< number of knots in all lower cells, stored as the bits of floats
   VF grid_origin_, grid_scale_, last_cell_;
 };
 
@@ -197,7 +201,8 @@ class Lookup<TableForm::two_vectors> {
 };
 
 /// Neighbouring lanes are usually in neighbouring intervals. A window of two vectors around the first active lane's
-/// interval then contains them all, and two loads and a permutation replace a gather. Both give the same numbers.
+/// interval then contains the intervals of all lanes, and two loads and a permutation replace a gather. The numbers are
+/// the same.
 template <>
 class Lookup<TableForm::many> {
  public:

@@ -12,11 +12,12 @@
 
 namespace tessera::integrals {
 
-/// A scalar for float lanes: the nearest integer number of units from the origin, clamped to +-2^30. Vertices and knots
-/// use the same rounding, so that scalars equal to the value of a step remain equal to it.
+/// Converts a value to a scalar for float lanes: the nearest integer number of units from the origin, clamped to
+/// +-2^30. Vertices and knots are rounded in the same way, so that scalars equal to the value of a step remain equal to
+/// it.
 float lane_scalar(double value, double scalar_origin, double scalar_unit);
 
-/// How the knots of a step are rounded, as the data may contain exactly the value of the step.
+/// How the knots of a step are rounded. This matters because the data may contain exactly the value of the step.
 enum class StepRounding {
   nearest,  ///< like all other knots
   up        ///< to the next float at or above, so that values that are exact as floats stay on their side of the step
@@ -27,18 +28,18 @@ enum class StepRounding {
 /// Intervals The K distinct positions of the knots separate K + 1 intervals, on each of which extinction and colour are
 ///           linear. The first and the last interval are constant. A step is where two adjacent intervals disagree; it
 ///           has no interval of its own, and its value is that of the interval above.
-/// Units     Scalars are values of lane_scalar(); lengths are in `length_unit` world units. Extinction is stored times
-///           length_unit, and so is colour under independent emission, so that scenes of size 1e-20 or 1e20 fit a
-///           float.
-/// Rounding  The table is the function through the rounded knots. Knots beyond +-2^30 units are cut off there. Numbers
+/// Units     Scalars are results of lane_scalar(); lengths are in `length_unit` world units. Extinction is stored
+///           multiplied by length_unit, and so is colour under independent emission, so that scenes of size 1e-20 or
+///           1e20 are in the range of a float.
+/// Rounding  The table is the function through the rounded knots. The function is cut off at +-2^30 units. Numbers
 ///           above 1e18 are stored as 1e18.
 /// Halves    Extinction is stored halved, because the integral uses half the optical depth at each end of a segment.
 /// Accuracy  channel(s) = start + slope * (s - base), where base is the end of the interval with the smaller
 ///           extinction. Both terms are then >= 0, and extinction keeps its relative accuracy near a knot of zero
 ///           extinction.
 struct LaneTable {
-  /// One row each. `edge[i]` is the lower end of interval i; edge[0] = -inf, and edge[K + 1] = +inf up to the end of
-  /// the row.
+  /// Each column of the function's table is stored as one row of `rows`. `edge[i]` is the lower end of interval i;
+  /// edge[0] = -inf, and all elements from edge[K + 1] to the end of the row are +inf.
   enum Column {
     edge,
     base,
@@ -52,13 +53,14 @@ struct LaneTable {
     blue_slope,
     column_count
   };
-  /// Rows are longer than K + 2 by at least this, so that whole vectors can be loaded from any interval onwards.
+  /// Rows have at least this many elements more than K + 2, so that whole vectors can be loaded from any interval
+  /// onwards.
   static constexpr std::size_t padding = 64;
 
-  /// `scalar_unit` and `length_unit` are powers of two.
+  /// `scalar_unit` and `length_unit` must be powers of two.
   LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit, double length_unit,
             scene::Emission emission, StepRounding steps = StepRounding::nearest);
-  /// For segments on a lattice: lengths are in its depth steps.
+  /// For segments on a lattice: lengths are in the lattice's depth steps.
   LaneTable(const scene::TransferFunction& function, const scene::Lattice& lattice, scene::Emission emission)
       : LaneTable(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, emission) {}
 
@@ -79,12 +81,12 @@ struct LaneTable {
   /// Indexed by edge, 1 to K: whether rounding moved knots so far that absorption or emission per length unit near them
   /// changes by more than 1e-7, or merged knots of different values.
   std::vector<std::uint8_t> is_moved;
-  bool has_steps = false;  ///< whether any of the function's knots make a step
+  bool has_steps = false;  ///< whether the function has any steps
 
-  // A uniform grid over the range of the knots, where the search for a scalar's interval starts. Cell j covers the
-  // scalars for which (s - grid_origin) * grid_scale, clamped to the grid and truncated, is j.
+  // A uniform grid over the range of the knots, which gives the start of the search for a scalar's interval. Cell j
+  // covers the scalars for which (s - grid_origin) * grid_scale, clamped to the grid and truncated, is j.
   float grid_origin = 0, grid_scale = 0, last_cell = 0;
-  std::vector<std::int32_t> knots_before;  ///< by cell: the knots in all lower cells
+  std::vector<std::int32_t> knots_before;  ///< for each cell, the number of knots in all lower cells
   std::size_t largest_step = 0;            ///< first step of a binary search within a cell, a power of two
 };
 

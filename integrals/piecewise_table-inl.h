@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the interval of a PiecewiseTable that each lane of doubles is in. Included once per instruction set (Highway's
-// include guard idiom).
+// Finds the interval of a PiecewiseTable that contains each lane's scalar, in double precision. Included once per
+// instruction set (Highway's include guard idiom).
 //
 // What      The number of knots that a ray at scalar s has passed: those at or below s if its scalar increases or is
 //           constant, otherwise those below s.
-// How       Up to 12 knots are all compared, which is cheaper than the gathers of a binary search.
-// Ends      NaN is in interval 0.
+// How       If there are at most 12 knots, all are compared, which is cheaper than the gathers of a binary search.
+// Ends      The interval of NaN is 0.
 
 #if defined(TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
@@ -29,7 +29,7 @@ using DI = hwy::HWY_NAMESPACE::RebindToSigned<D>;
 using V = hwy::HWY_NAMESPACE::Vec<D>;
 using VI = hwy::HWY_NAMESPACE::Vec<DI>;
 
-/// The interval that a ray at scalar s enters next.
+/// Returns the interval that a ray at scalar s enters next.
 HWY_INLINE VI locate(const PiecewiseTable& table, V s, hwy::HWY_NAMESPACE::Mask<D> up) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;

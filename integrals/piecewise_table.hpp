@@ -23,9 +23,10 @@ struct PiecewiseTable {
   explicit PiecewiseTable(const scene::TransferFunction& function);
 
   std::size_t knot_count;
-  std::vector<double> below, above, base;  ///< K + 1 each, zero-padded to at least 8; below[0] = -inf, above[K] = +inf
-  std::vector<double> values;              ///< the K knots' values, then +inf up to a power of two minus one
-  std::array<Channel, 4> channels;         ///< extinction, red, green, blue
+  /// K + 1 elements each, zero-padded to at least 8; below[0] = -inf, above[K] = +inf.
+  std::vector<double> below, above, base;
+  std::vector<double> values;       ///< the K knots' values, then +inf up to a power of two minus one
+  std::array<Channel, 4> channels;  ///< extinction, red, green, blue
 };
 
 }  // namespace tessera::integrals

@@ -6,7 +6,7 @@
 
 namespace tessera::integrals {
 
-/// A batch of ray segments for an integrator with the resulting light, one array per quantity.
+/// A batch of ray segments for an integrator, together with the resulting light; one array per quantity.
 ///
 /// Arrays have `padding` more elements than `size`, so that the last vector of lanes may read and write past the end.
 struct SegmentBatch {
@@ -14,7 +14,7 @@ struct SegmentBatch {
   static constexpr std::size_t bytes_each = 8 * sizeof(double);
 
   std::size_t size = 0;
-  // Input. Length in world units along the ray; scalars at entry and exit, linear in between.
+  // Input. Lengths are in world units along the ray. Scalars are those at entry and exit; they are linear in between.
   std::vector<double> length, scalar_front, scalar_back;
   // Output. Light that leaves the front of the segment, linear RGB; optical depth int kappa dt; transmittance
   // exp(-optical depth).

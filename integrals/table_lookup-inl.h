@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interpolation in tables of floats by lanes of doubles. Included once per instruction set (Highway's include guard
+// Interpolation in tables of floats, for lanes of doubles. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What      The entries on either side of a position along an axis, and linear interpolation between them in double
-//           precision.
-// Ends      Positions are clamped to the table; NaN becomes the first entry.
+// What   Finds the entries on either side of a position along an axis, and interpolates linearly between them in double
+//        precision.
+// Ends   Positions are clamped to the table; NaN becomes the first entry.
 
 #if defined(TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_
@@ -21,13 +21,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 
-/// A position on an axis: the entry below it, and the fraction of the step from that entry to the next. Indices are
-/// integers stored as doubles, which SIMD converts to the 32-bit indices of a gather of floats.
+/// A position on an axis: the entry below the position, and the fraction of the step from this entry to the next.
+/// Indices are integers stored as doubles, which SIMD converts to the 32-bit indices of a gather of floats.
 struct Place {
   V below, part;
 };
 
-/// The position `x`, in entries, clamped to [0, size - 1]; NaN becomes 0. size >= 2.
+/// Returns the position `x`, in entries, clamped to [0, size - 1]; NaN becomes 0. `size` must be at least 2.
 HWY_INLINE Place place_in(V x, int size) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
