@@ -45,13 +45,13 @@ struct MergeContext {
   std::uint32_t frame = 0;
   /// If not null, the CPU takes over when the device fails, and the flag is set to true.
   std::atomic<bool>* device_failed = nullptr;
-  std::atomic<std::uint64_t>* segments =
-      nullptr;  ///< counts the segments that the device makes from cells; may be null
+  /// Counts the segments that the device makes from cells; may be null.
+  std::atomic<std::uint64_t>* segments = nullptr;
   /// Set to true if runs of a pixel overlap, because they then have no correct order; may be null.
   std::atomic<bool>* overlapping = nullptr;
   const scene::SurfaceSet* surfaces = nullptr;  ///< surfaces inside the volume; null: none
-  const projection::MatterLight* light =
-      nullptr;  ///< lighting of the matter of a mesh, computed by the CPU; null: none
+  /// Lighting of the matter of a mesh, computed by the CPU; null: none.
+  const projection::MatterLight* light = nullptr;
 
   /// An upper bound of the light that can be behind a transmittance of 1.
   [[nodiscard]] double opacity_weight() const {

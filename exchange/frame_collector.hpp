@@ -57,8 +57,8 @@ class FrameCollector {
  private:
   struct Tile {
     int contributors = 0, ended = 0;
-    std::vector<double>
-        final_depth;  ///< one per projector: initially -infinity; +infinity for projectors without parts
+    /// One per projector: initially -infinity; +infinity for projectors without parts.
+    std::vector<double> final_depth;
     std::vector<TilePart> parts;
     std::uint64_t bytes = 0;
     double merged_to = -std::numeric_limits<double>::infinity();

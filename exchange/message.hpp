@@ -27,10 +27,9 @@ inline constexpr std::uint16_t wire_version = 31;        ///< incremented whenev
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
-  begin =
-      1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver, in its order, lowest bit first: 1: parts follow
-  parts = 2,    ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,      ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
+  begin = 1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver, in its order, lowest first: 1: parts follow
+  parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
+  end = 3,    ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
   packet = 51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty: pixels (packed_pixels.hpp)
                 ///< and, if kept, f32 error estimates row by row
   // Channel credit.

@@ -130,8 +130,8 @@ struct FrameEnd {
   scene::FrameCounters counters;
   std::uint64_t on_lattice = 0;      ///< 1: the projector's segments are on the integer lattice
   std::uint64_t failed_devices = 0;  ///< number of compositors whose device failed and that continued on the CPU
-  std::uint64_t stopped =
-      0;  ///< number of projectors and compositors that left something out because they were stopped
+  /// Number of projectors and compositors that left something out because they were stopped.
+  std::uint64_t stopped = 0;
   std::uint64_t overlapping = 0;  ///< number of compositors that received runs which overlap
 };
 static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 32);

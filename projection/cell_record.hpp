@@ -33,8 +33,9 @@ struct CellRecord {
 };
 static_assert(sizeof(CellRecord) == 136);
 
-/// Cell `tet` of the frame, `global_tet` in the whole mesh. Empty if a device cannot rasterize it: a corner is behind
-/// or in the eye plane, farther away than CellRecord::reach, or outside the clipping range.
+/// Makes the record of the frame's cell `tet`; its index in the whole mesh is `global_tet`. Empty if a device cannot
+/// rasterize the cell: a corner is behind or in the eye plane, farther away than CellRecord::reach, or outside the
+/// clipping range.
 std::optional<CellRecord> cell_record(const ProjectedMesh& projected, std::uint32_t tet, std::uint64_t global_tet);
 
 /// The parameters with which a device makes segments from cells.

@@ -47,8 +47,8 @@ ClearFloats clear_floats(const ClearIntervals::Interval& interval, bool exact);
 struct CullView {
   CullView(double near_depth, double far_depth, double depth_origin, scene::ImageSize image, int tile_size);
 
-  bool
-      nothing_sure;  ///< all cells are unsure: depths exceed the range of float, or there are too many tiles for places
+  /// All cells are unsure: depths exceed the range of float, or there are too many tiles for places.
+  bool nothing_sure;
   float near_low, near_high, far_low, far_high;  ///< bounds of near and far depth, relative to the origin
   float depth_slack;  ///< upper bound by which a vertex may exceed its CullVertex::depth, at depth 0
   float width, height;

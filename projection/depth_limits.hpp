@@ -27,8 +27,8 @@ struct DepthLimits {
   static constexpr double usual_plane_error = 6, usual_quotient_error = 0x1p-23, most_quotient_error = 0x1p-22;
 
   double light_per_step = 0;  ///< largest change of a pixel per step of depth
-  double least_extent =
-      std::numeric_limits<double>::infinity();  ///< cells with at most this extent in depth, in steps, are accurate
+  /// Cells with at most this extent in depth, in steps, are accurate.
+  double least_extent = std::numeric_limits<double>::infinity();
 
   DepthLimits() = default;
   DepthLimits(double light, bool perspective) : light_per_step(light) {

@@ -34,8 +34,8 @@ LineOfSight line_of_sight(const PixelVertex& v, double pixels_per_tangent);
 /// exact arithmetic (floating-point expansions: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
 /// Geometric Predicates", 1997). If the ray meets the edge itself, it is shifted by (e, e^2) with e infinitely small
 /// and positive: the sign is then that of dE/dx, or, if this is zero, of dE/dy. The result is 0 only if a and b are on
-/// one line through the eye: this edge has no sides, and no face with this edge is hit. edge_sign(a, b) = -edge_sign(b,
-/// a).
+/// one line through the eye: this edge has no sides, and no face with this edge is hit. Swapping a and b changes the
+/// sign.
 ///
 /// If `on_edge` is not null, it is set to whether E is zero, that is, whether the ray meets the edge.
 int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py, double pixels_per_tangent,

@@ -37,8 +37,8 @@ struct ProjectedMesh {
 /// Statistics of rasterization.
 struct RasterCounts {
   std::uint64_t exact_sign_tests = 0;  ///< planes: edge signs decided by exact arithmetic
-  std::uint64_t unpaired =
-      0;  ///< scanline: front-face fragments that were lost because the pixel had no back-face fragment
+  /// Scanline: front-face fragments that were lost because the pixel had no back-face fragment.
+  std::uint64_t unpaired = 0;
 };
 
 /// The `planes` rasterizer: rasterizes cells to ray segments for the pixels of one rectangle.

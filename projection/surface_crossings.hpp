@@ -82,8 +82,8 @@ struct LatticePlace {
 struct IsoView {
   const scene::SurfaceSet* surfaces;
   const PixelSpace* space;
-  const scene::Lattice* lattice =
-      nullptr;  ///< the lattice to whose steps depths will be rounded; null: depths are not rounded
+  /// The lattice to whose steps depths will be rounded; null: depths are not rounded.
+  const scene::Lattice* lattice = nullptr;
 
   [[nodiscard]] std::span<const double> values() const { return surfaces->iso_values(); }
 

@@ -18,9 +18,8 @@ struct SurfaceFaces {
   const tessera::TriangleMesh* mesh;
   std::uint32_t entering, leaving;      ///< scene::SurfaceSet::face_crossing() of rays that enter, or leave
   std::span<const std::uint8_t> own{};  ///< one flag per triangle: 1 if this process owns it
-  std::uint32_t process = 0,
-                processes =
-                    1;  ///< if `own` is empty, the process owns the triangles with triangle % processes == process
+  /// If `own` is empty, the process owns the triangles with triangle % processes == process.
+  std::uint32_t process = 0, processes = 1;
   [[nodiscard]] bool owns(std::size_t triangle) const {
     return own.empty() ? triangle % processes == process : own[triangle] != 0;
   }

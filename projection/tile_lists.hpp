@@ -46,8 +46,8 @@ struct TileListReads {
 /// Memory of TileLists, kept from frame to frame.
 struct TileListBuffers {
   LargeArray<CullVertex> vertices;
-  LargeArray<std::uint32_t>
-      places;                     ///< one per tet: the place of the tet's box (cull_cells.hpp), if the tet is projected
+  /// One per tet: the place of the tet's box (cull_cells.hpp), if the tet is projected.
+  LargeArray<std::uint32_t> places;
   LargeArray<float> near_depths;  ///< one per tet
   LargeArray<TileEntry> entries;  ///< the lists
 };

@@ -33,8 +33,8 @@ class DeepCollector final : public DeepTarget {
   /// Returns the image and empties the collector. Pixels for which no samples were added have none.
   scene::DeepImage image();
 
-  static constexpr std::uint64_t bytes_a_pixel =
-      2 * sizeof(std::uint64_t);  ///< memory per pixel that is needed in addition to the samples
+  /// Memory per pixel that is needed in addition to the samples.
+  static constexpr std::uint64_t bytes_a_pixel = 2 * sizeof(std::uint64_t);
 
  private:
   struct Block {

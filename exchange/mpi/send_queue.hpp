@@ -49,8 +49,8 @@ class SendQueue {
   std::deque<Outgoing> queue_;
   bool posting_ = false;  ///< messages have left the queue, but are not passed to MPI yet
   bool ended_ = false;
-  scene::Trace *projecting_ = nullptr,
-               *compositing_ = nullptr;  ///< changed only while no messages are being passed to MPI
+  /// Changed only while no messages are being passed to MPI.
+  scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;
 };
 
 }  // namespace tessera::exchange

@@ -45,8 +45,8 @@ class SplitByTimes {
   int pictures_ = 0;                ///< number of frames from which it has learned
   double tiles_ = 0;                ///< time of all tiles in the last frame, in nanoseconds
   std::vector<double> other_work_;  ///< time of each rank for other work than its tiles, in nanoseconds
-  std::vector<double>
-      predicted_;               ///< predicted time of each rank's tiles in the last split, in nanoseconds; empty: none
+  /// Predicted time of each rank's tiles in the last split, in nanoseconds; empty: none.
+  std::vector<double> predicted_;
   std::vector<double> missed_;  ///< how much each rank's share of the time of all tiles exceeds the prediction
 };
 

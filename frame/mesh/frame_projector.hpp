@@ -30,8 +30,8 @@ struct FrameTask {
   const scene::SurfaceSet* surfaces = nullptr;        ///< surfaces inside the volume; may be null or empty
   std::span<const projection::SurfaceFaces> faces{};  ///< triangle surfaces
   const scene::Lattice* lattice = nullptr;            ///< lattice on which to render; null: render in double precision
-  const projection::MatterLight* light =
-      nullptr;               ///< on the lattice: lighting of the matter of point data; null: no lighting
+  /// On the lattice: lighting of the matter of point data; null: no lighting.
+  const projection::MatterLight* light = nullptr;
   std::int32_t number = -1;  ///< frame number for the trace
   float longest_edge = 0;    ///< scanline: longest edge of the whole data set, world units; 0: that of this mesh
   double longest_ray = 0;    ///< upper bound of a ray's length in the whole mesh; 0: diagonal()

@@ -13,9 +13,9 @@ namespace tessera::frame {
 /// restricted. So the reference does not depend on how cells are cut.
 struct UncutMesh {
   scene::TetMeshView mesh;
-  std::span<const scene::HalfSpace>
-      kept;                     ///< half-spaces of the data set's state; empty: `mesh` is rendered without clipping
-  scene::TetMeshView rendered;  ///< the mesh that is rendered; equals `mesh` if this rank has only a part
+  /// Half-spaces of the data set's state; empty: `mesh` is rendered without clipping.
+  std::span<const scene::HalfSpace> kept;
+  scene::TetMeshView rendered;        ///< the mesh that is rendered; equals `mesh` if this rank has only a part
   std::shared_ptr<const void> owner;  ///< keeps `mesh` in memory; null: the data set's state does
 };
 

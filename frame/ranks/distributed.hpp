@@ -42,8 +42,8 @@ struct ProjectorMesh {
   std::shared_ptr<const void> owner;  ///< keeps the arrays of `part` and the indices in memory
   /// The part prepared for projection, if it has been prepared already; null: DistributedRenderer prepares it.
   std::shared_ptr<const projection::PreparedMesh> prepared{};
-  std::span<const std::uint64_t>
-      global_tet{};                      ///< index of each tet in the whole mesh, ascending; empty: the index in `part`
+  /// Index of each tet in the whole mesh, ascending; empty: the index in `part`.
+  std::span<const std::uint64_t> global_tet{};
   double diagonal = 0;                   ///< diagonal of the whole mesh's box, world units
   scene::Box box;                        ///< box of the whole mesh
   std::array<double, 2> scalar_range{};  ///< scalar range of the whole mesh

@@ -19,8 +19,8 @@ namespace tessera::frame {
 struct DistributedMesh {
   MeshPart part;           ///< this rank's tets; empty on ranks that do not project
   scene::MeshFacts facts;  ///< of the whole mesh
-  std::shared_ptr<const FieldOfAll>
-      of_all;  ///< field and facts without the user's selection of cells; null: the options select everything
+  /// Field and facts without the user's selection of cells; null: the options select everything.
+  std::shared_ptr<const FieldOfAll> of_all;
   /// The result of io::read_mesh for the whole file, the same on every rank. Its mesh, however, contains only the
   /// field's name and association.
   cells::MeshFile description;

@@ -48,8 +48,8 @@ class ChunkSender {
   std::vector<std::uint64_t> begin_;    ///< begin of each part in `order_`; parts + 1 values
   std::vector<std::uint32_t> order_;    ///< tets sorted by part, ascending within each part
   std::size_t at_ = 0, end_ = 0;        ///< range in `order_` of the tets of the current part that are not sent yet
-  std::vector<std::uint32_t>
-      number_;  ///< number of each vertex in the stream; `unsent` if the vertex was not sent to this part
+  /// Number of each vertex in the stream; `unsent` if the vertex was not sent to this part.
+  std::vector<std::uint32_t> number_;
   std::uint64_t sent_vertices_ = 0;
 };
 

@@ -187,8 +187,8 @@ struct Hit {
 /// Queue of hits whose crossings are still to be computed.
 struct HitQueue {
   static constexpr std::size_t worth_draining = 512;
-  static constexpr std::size_t most =
-      worth_draining + SegmentWindows::most_pixels;  ///< includes the hits of one more cell
+  /// Includes the hits of one more cell.
+  static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;
 
   std::size_t size = 0;
   alignas(64) std::int32_t hit[most + lanes];

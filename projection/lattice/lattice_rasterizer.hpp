@@ -37,8 +37,8 @@ struct LatticeView {
   DepthLimits depth_limits{};
   std::span<const Step> steps{};           ///< steps of the transfer function
   const CellsAtSteps* at_steps = nullptr;  ///< the cells that are irregular because of these steps; null: none
-  const MatterLight* light =
-      nullptr;  ///< lighting of the matter of point data: segments get a SegmentLight; null: no lighting
+  /// Lighting of the matter of point data: segments get a SegmentLight; null: no lighting.
+  const MatterLight* light = nullptr;
   const PixelSpace* space = nullptr;  ///< only needed with `light`
 };
 

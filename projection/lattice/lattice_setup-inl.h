@@ -77,8 +77,8 @@ struct CellBatch {
   alignas(64) std::int32_t depth_c[4][most];
   alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
-  alignas(64) float scalar_low[most],
-      scalar_high[most];  ///< lowest and highest scalar of a cell's corners; only with surfaces
+  /// Lowest and highest scalar of a cell's corners; only with surfaces.
+  alignas(64) float scalar_low[most], scalar_high[most];
 
   static constexpr int front_bit = 0, edge_on_bit = 8, flipped_bit = 16;
   /// Bit f: face f is a front face. Undefined for an irregular cell.

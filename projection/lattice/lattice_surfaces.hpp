@@ -23,8 +23,8 @@ struct LatticeSurfaces {
   /// The range of the values, on the lattice, of a cell's surfaces; for a cell without surfaces, a range that no
   /// segment can reach.
   alignas(64) float low[most_cells], high[most_cells];
-  alignas(64) std::int32_t first[most_cells],
-      count[most_cells];  ///< the cell's surfaces, as indices of SurfaceSet::on_lattice()
+  /// The cell's surfaces, as indices of SurfaceSet::on_lattice().
+  alignas(64) std::int32_t first[most_cells], count[most_cells];
   // The following are only set for cells with crossed segments.
   alignas(64) double normal[3][most_cells];     ///< unit normal of the field; zero: there is no normal
   alignas(64) double least_cosine[most_cells];  ///< 1 without a normal, otherwise 0

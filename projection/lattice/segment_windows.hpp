@@ -25,8 +25,8 @@ struct SegmentLight {
 
 /// Segments as the rasterizer appends them: structure of arrays with `size` elements, in the order of the cells.
 struct SegmentStream {
-  static constexpr std::size_t padding =
-      64;  ///< number of elements after the last one that a store of lanes may overwrite
+  /// Number of elements after the last one that a store of lanes may overwrite.
+  static constexpr std::size_t padding = 64;
 
   std::size_t size = 0;
   std::vector<std::int32_t> front, back;

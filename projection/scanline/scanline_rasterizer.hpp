@@ -67,6 +67,7 @@ struct ScanlineBuffers {
 ///   on this.
 /// - Segments are cut at the clipping range.
 /// - A flat cell, whose faces have no front and back, makes no segments.
+///
 /// Four lanes with Highway replace SSE intrinsics. One source is compiled for every processor and dispatched like
 /// `planes`, with the masks and compiler flags of the newest instruction set, but never with more than the paper's four
 /// lanes.
