@@ -7,7 +7,7 @@
 namespace tessera::exchange {
 namespace {
 
-/// On a cache line of its own.
+/// A bell has a cache line of its own.
 struct alignas(64) Bell {
   std::atomic<std::uint32_t> rung = 0;
 };

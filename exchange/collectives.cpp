@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/collectives.hpp"
 
-// All collectives pass through rank 0. No rank can begin the next one before rank 0 has every rank's part of this one,
-// so messages of two collectives never mix although receive() takes messages from any rank.
+// All collectives pass through rank 0. No rank can begin the next collective before rank 0 has every rank's part of
+// this one, so messages of two collectives never mix although receive() takes messages from any rank.
 namespace tessera::exchange {
 namespace {
 

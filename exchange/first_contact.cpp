@@ -19,7 +19,7 @@ rlim_t address_space() {
   return getrlimit(RLIMIT_AS, &space) == 0 ? space.rlim_cur : RLIM_INFINITY;
 }
 
-/// The words, each followed by a zero, which no argument contains.
+/// Joins the words, each followed by a zero byte, which no argument contains.
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all.append(word).push_back('\0');
@@ -33,7 +33,7 @@ std::vector<std::string_view> split(std::string_view all) {
   return words;
 }
 
-/// The error for two ranks' first different argument.
+/// Returns the error for the first argument in which two ranks differ.
 scene::Error differ(int rank, int size, std::string_view own, std::string_view other) {
   const auto ours = split(own), theirs = split(other);
   const auto at = static_cast<std::size_t>(std::mismatch(ours.begin(), ours.end(), theirs.begin(), theirs.end()).first -
@@ -51,7 +51,7 @@ class Contact {
   Contact(Transport& transport, std::chrono::milliseconds patience, const std::vector<std::string>& arguments)
       : transport_(transport), patience_(patience), end_(Clock::now() + patience), arguments_(joined(arguments)) {}
 
-  /// Receives one message from each other rank on rank 0; one from rank 0 on others.
+  /// On rank 0, receives one message from each other rank; on other ranks, one from rank 0.
   void hear() {
     for (int missing = transport_.rank() == 0 ? transport_.size() - 1 : 1; missing > 0;)
       if (const auto message = transport_.receive(Channel::agreement, std::chrono::milliseconds(100))) {

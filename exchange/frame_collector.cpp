@@ -93,7 +93,8 @@ FrameCollector::Waiting FrameCollector::take(std::uint32_t number) {
   from.merged_to = all ? infinity : final_depth(from);
   std::stable_sort(from.parts.begin(), from.parts.end(),
                    [](const TilePart& a, const TilePart& b) { return a.start_depth < b.start_depth; });
-  // A part that begins deeper than other projectors have come stays unmerged: it takes a fifth of the memory.
+  // A part that begins deeper than the depth to which other projectors are complete stays unmerged: unmerged, it takes
+  // a fifth of the memory.
   const auto ahead = std::find_if(from.parts.begin(), from.parts.end(), [&](const TilePart& part) {
     return !all && part.start_depth >= from.merged_to && std::isfinite(part.start_depth);
   });

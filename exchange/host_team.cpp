@@ -12,13 +12,13 @@
 
 namespace tessera::exchange {
 
-/// What members communicate.
+/// The data in shared memory through which members communicate.
 struct HostTeam::Control {
   struct alignas(64) Member {
-    std::atomic<std::uint64_t> at = 0;    ///< the barrier that it has reached: epoch << 32 | step
-    std::atomic<std::uint64_t> left = 0;  ///< the epoch that it left last
-    std::uint64_t words[2] = {};          ///< of gather(), of even and odd steps: a member that is one step ahead does
-                                          ///< not overwrite
+    std::atomic<std::uint64_t> at = 0;    ///< the barrier that the member has reached: epoch << 32 | step
+    std::atomic<std::uint64_t> left = 0;  ///< the epoch that the member has left last
+    std::uint64_t words[2] = {};  ///< the words of gather(), for even and odd steps, so that a member that is one step
+                                  ///< ahead does not overwrite them
   };
   std::atomic<std::uint32_t> changes = 0;
   std::atomic<std::uint64_t> drawn = 0;       ///< epoch << 32 | numbers drawn
@@ -71,7 +71,7 @@ void HostTeam::arrive(bool may_stop) {
     bool all = true;
     for (std::size_t m = 0; m < ranks_.size(); ++m) {
       const Control::Member& member = shared.members[m];
-      // Check whether it has left first: it may already be in the next epoch.
+      // Checks first whether the member has left, because it may already be in the next epoch.
       if (may_stop && member.left.load(std::memory_order_acquire) == epoch_) throw scene::FrameStopped{};
       all = all && member.at.load(std::memory_order_acquire) >= here;
     }
@@ -120,7 +120,7 @@ std::byte* HostTeam::memory(Room room, std::size_t bytes) {
   barrier();
   const std::int32_t descriptor = shared.descriptor.load(std::memory_order_acquire);
   if (rank_ != 0 && descriptor >= 0) pages = SharedPages::opened(process, descriptor, bytes);
-  // Each member allocates its share, so that this part is in memory close to it.
+  // Each member allocates its share, so that this share is in memory close to the member.
   const scene::Share own = scene::share_of(bytes, this);
   bool good = pages && pages->reserve(own.first, own.last);
   if (scene::least_of(std::uint64_t{good}, this) == 0) throw no_shared_memory(bytes);

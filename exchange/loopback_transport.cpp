@@ -26,7 +26,7 @@ class LoopbackNetwork::Rank final : public Transport {
     return mailboxes_.receive(channel, timeout);
   }
   void fail(const scene::Error& error) override {
-    // Under one lock, so that two errors at the same time leave every rank with the same one.
+    // Errors are set under one lock, so that two errors at the same time leave every rank with the same error.
     const std::lock_guard lock(network_.fault_);
     for (auto& rank : network_.ranks_) rank->mailboxes_.fail(error);
   }

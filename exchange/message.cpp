@@ -7,7 +7,7 @@
 
 namespace tessera::exchange {
 
-// Neither inline nor with append(): GCC 12 reports an overflow when a vector of known size grows.
+// This is not inline, and does not use append(), because GCC 12 reports an overflow when a vector of known size grows.
 Bytes begin_message(MessageKind kind, std::size_t room) {
   Bytes message;
   message.reserve(sizeof(MessageHeader) + room);

@@ -16,9 +16,9 @@
 namespace tessera::exchange {
 namespace {
 
-/// Memory that all ranks of a machine share: whether one of them has printed the error.
+/// The part of a machine's shared memory that records whether one of its ranks has printed the error.
 struct Spoken {
-  std::uint64_t key = 0;  ///< of the rank whose memory this is
+  std::uint64_t key = 0;  ///< identifies the rank that owns this memory
   std::atomic<bool> done = false;
 };
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -39,7 +39,7 @@ Spoken* map_spoken(int memory) {
   return at == MAP_FAILED ? nullptr : static_cast<Spoken*>(at);
 }
 
-/// A Spoken that others can open while this process exists. If there is none, each rank reports for itself.
+/// Makes a Spoken that other processes can open while this process exists. If this fails, each rank reports for itself.
 Spoken* make_spoken(Neighbour& self) {
   self.memory = memfd_create("tessera", MFD_CLOEXEC);
   if (self.memory < 0 || ftruncate(self.memory, sizeof(Spoken)) != 0) return nullptr;
@@ -76,7 +76,7 @@ bool share_one_line(Transport& transport) {
     if (other.host != self.host) continue;
     Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;
     if (others != nullptr) shared = others;
-    break;  // the lowest rank's is used by all
+    break;  // all ranks use that of the lowest rank
   }
   if (shared != nullptr) spoken = shared;
   return with_first;

@@ -23,13 +23,13 @@ constexpr std::size_t word_bytes = columns * sizeof(std::uint32_t);
 /// A band of an image's columns.
 template <class Float>
 struct PixelBand {
-  Float *rgba, *depth;  ///< of the band's first pixel
+  Float *rgba, *depth;  ///< pixels begin here: the band's first pixel
   std::size_t row;      ///< pixels from one row to the next
   std::size_t width;    ///< at most 16
   std::size_t height;
 };
 
-/// The position in the streams of a rectangle.
+/// A position in the streams of a rectangle.
 template <class Byte>
 struct Streams {
   Byte *words, *last;    ///< the first 16 words, and the last 16 that may be read
@@ -56,7 +56,7 @@ struct Rows {
   HWY_ALIGN_MAX std::uint32_t of[channels][columns];
 };
 
-// Words in messages are unaligned.
+// Words in messages are not aligned.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE U load_words(const std::byte* from) {
   std::uint32_t word;
@@ -104,8 +104,8 @@ HWY_INLINE void join_channels(const Rows& rows, float* rgba, float* depth) {
   }
 }
 
-/// Computes the prediction errors of `next` from the rows above, as unsigned integers with the sign in the lowest bit;
-/// then `next` becomes the row above. Returns the width of the largest error.
+/// Computes the prediction errors of `next` from the rows above, as unsigned integers with the sign in the lowest bit.
+/// Then `next` becomes the row above. Returns the number of bits of the largest error.
 HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t* HWY_RESTRICT above,
                            std::uint32_t* HWY_RESTRICT step, std::uint32_t* HWY_RESTRICT differences) {
   const DU du;
@@ -167,7 +167,7 @@ HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_
   from.bits += width;
 }
 
-/// `unfinished`: for each stream, the bits of the word that is not full.
+/// `unfinished`: for each stream, the bits of the last word, which is not full yet.
 void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams<std::byte>& to,
                std::uint32_t* unfinished) {
   Rows next, above{}, step{}, differences;

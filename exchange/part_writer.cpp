@@ -33,7 +33,7 @@ std::uint32_t PartWriter::tile_pixel(std::size_t pixel) const {
 }
 
 void PartWriter::complete_to(double depth) {
-  // A part of the tile does not determine how complete the whole tile is.
+  // If the rectangle is only a part of the tile, its depth does not determine how complete the whole tile is.
   if (rect_.area() == tile_rect_.area()) final_depth_ = depth;
 }
 

@@ -151,7 +151,7 @@ std::optional<PagesOfMachine> share_pages(Transport& transport, bool joins,
                                           const std::function<void(std::byte* pages, std::size_t ranks)>& fill) {
   struct Offer {
     std::uint64_t process;
-    std::uint64_t key;  // recognizes these pages, so that no others are used
+    std::uint64_t key;  // identifies these pages, so that no others are used
     std::int64_t descriptor;
   };
   Bytes mine = begin_message(MessageKind::machine);

@@ -17,8 +17,8 @@
 
 #include "exchange/one_line.hpp"
 
-// A signal handler may use only plain memory filled before the handler was installed, lock-free atomics, and system
-// calls.
+// A signal handler may use only plain memory that was filled before the handler was installed, lock-free atomics, and
+// system calls.
 namespace tessera::exchange {
 namespace {
 
@@ -35,7 +35,7 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
     return;
   }
   // The launcher ends all ranks and waits for none. A signal from any other process may be meant for this rank alone:
-  // the first one makes the run end in the orderly way, a second one ends this rank at once.
+  // the first signal makes the run end in an orderly way, a second signal ends this rank at once.
   const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
   if (signal == SIGTERM && !from_launcher && !asked_to_end.exchange(true)) return;
   if (!is_ending && speaks_for_the_lost && may_speak()) {
@@ -55,8 +55,8 @@ pid_t parent_of(pid_t process) {
   return static_cast<pid_t>(std::atoi(text.c_str() + name_end + 4));
 }
 
-/// The processes that may send SIGTERM to all ranks at once: the parent, and, if the launcher started a script, the
-/// launcher itself. It puts what it starts into a process group of its own.
+/// Returns the processes that may send SIGTERM to all ranks at once: the parent and, if the launcher started a script,
+/// the launcher itself. The launcher puts the processes that it starts into a process group of their own.
 std::array<pid_t, 2> find_launchers() {
   const pid_t group = getpgrp();
   pid_t outside = getppid();

@@ -13,7 +13,7 @@ TileMap::TileMap(std::size_t tiles, int compositors, std::uint64_t seed)
   std::vector<int> order(static_cast<std::size_t>(compositors));
   for (std::size_t first = 0; first < tiles; first += order.size()) {
     std::iota(order.begin(), order.end(), 0);
-    // Not std::shuffle: its result differs between standard libraries, and ranks may run different ones.
+    // std::shuffle is not used because its result differs between standard libraries, and ranks may run different ones.
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
     for (std::size_t i = 0; i < order.size() && first + i < tiles; ++i) {
       owners_[first + i] = order[i];

@@ -45,10 +45,10 @@ std::vector<Layer> receive_order(std::span<const int> order, std::size_t place) 
 
 namespace {
 
-/// What precedes the pixels of a packet.
+/// Header of a packet, which precedes its pixels.
 struct PacketHeader {
   std::uint64_t frame;
-  PixelRect rows;         ///< the rows of the receiver's band that the packet is for
+  PixelRect rows;         ///< the rows of the receiver's band that the packet covers
   PixelRect rect;         ///< the part of these rows where the sender may have pixels
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
@@ -65,14 +65,14 @@ std::vector<PixelRect> packets_of(const PixelRect& band) {
   return packets;
 }
 
-/// Stores `front` over `back` in `back`.
+/// Composites `front` over `back` and stores the result in `back`.
 void put_in_front(const float* front, float front_depth, float* back, float& back_depth) {
   const float through = 1 - front[3];
   for (int c = 0; c < 4; ++c) back[c] = front[c] + through * back[c];
   if (std::isfinite(front_depth)) back_depth = front_depth;
 }
 
-/// Stores `front` over `back` in `front`.
+/// Composites `front` over `back` and stores the result in `front`.
 void put_behind(const float* back, float back_depth, float* front, float& front_depth) {
   const float through = 1 - front[3];
   for (int c = 0; c < 4; ++c) front[c] += through * back[c];
@@ -118,7 +118,7 @@ class Exchange {
     for (int step = 1; step < ranks; ++step) {
       const int to = (rank + step) % ranks, from = (rank + ranks - step) % ranks;
       for (const PixelRect& rows : packets_of(band(to))) send(to, rows);
-      // Only for this one: messages that arrive early are kept.
+      // Waits only for this rank's messages; other messages that arrive early are kept.
       while (came_[static_cast<std::size_t>(from)].size() < packets_.size()) await();
     }
     composite();
@@ -157,7 +157,7 @@ class Exchange {
       came_.at(static_cast<std::size_t>(message.from)).push_back(std::move(message));
   }
 
-  /// Composites all packets that have come and are next in order.
+  /// Composites all packets that have arrived and are next in order.
   void composite() {
     for (; next_layer_ < layers_.size(); ++next_layer_, next_packet_ = 0) {
       auto& came = came_[static_cast<std::size_t>(layers_[next_layer_].rank)];
@@ -202,8 +202,9 @@ class Exchange {
   std::span<float> error_bounds_;
   std::size_t place_;
   std::vector<Layer> layers_;
-  std::vector<PixelRect> packets_;          ///< of this rank's band
-  std::vector<std::vector<Message>> came_;  ///< by sender, in the order sent; empty once composited
+  std::vector<PixelRect> packets_;  ///< of this rank's band
+  /// One list per sender, in the order of sending; a message is empty once it is composited.
+  std::vector<std::vector<Message>> came_;
   std::size_t next_layer_ = 0, next_packet_ = 0;
   scene::Image scratch_;
   std::vector<float> bounds_;

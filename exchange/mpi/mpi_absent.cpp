@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built instead of mpi_port.cpp with TESSERA_MPI=OFF: no process counts as launched by MPI, and no port opens.
+// Built instead of mpi_port.cpp with TESSERA_MPI=OFF: no process counts as launched by MPI, and opening a port fails.
 #include "exchange/mpi/mpi_port.hpp"
 #include "exchange/mpi/mpi_transport.hpp"
 

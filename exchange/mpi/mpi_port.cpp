@@ -44,7 +44,7 @@ MPI_Comm duplicate(int fortran_handle) {
 }  // namespace
 
 bool launched_by_mpi() {
-  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 launchers, in this order.
+  // These are set by Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 launchers, in this order.
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name) != nullptr) return true;
   return false;

@@ -31,10 +31,10 @@ constexpr auto stall_grace = std::chrono::seconds(1);
 
 }  // namespace
 
-/// The thread that calls MPI, and the data it shares with the others.
+/// The thread that calls MPI, and the data that it shares with other threads.
 class MpiTransport::Engine {
  public:
-  /// `borrowed`: a caller's communicator; without it, MPI's world, which the engine starts and ends.
+  /// `borrowed` is a caller's communicator. Without it, the engine uses MPI's world, which it starts and ends.
   Engine(Hooks hooks, std::chrono::milliseconds patience, std::optional<int> borrowed)
       : hooks_(std::move(hooks)),
         patience_(patience),
@@ -125,7 +125,7 @@ class MpiTransport::Engine {
     queue.end();
   }
 
-  /// Sends queued messages and takes those that have arrived. Returns whether one has.
+  /// Sends queued messages and takes messages that have arrived. Returns whether any have arrived.
   bool look(Bells* bells) {
     try {
       post(bells);
@@ -141,7 +141,7 @@ class MpiTransport::Engine {
     }
   }
 
-  /// Hands queued messages to MPI.
+  /// Passes queued messages to MPI.
   void post(Bells* bells) {
     queue.hand_over([&](SendQueue::Outgoing& message) {
       if (mailboxes.failed() && message.tag != own_tag) return;
@@ -166,7 +166,7 @@ class MpiTransport::Engine {
     return moved;
   }
 
-  /// Handles one of the transport's own messages. One that no rank of this program sends is an error of the run.
+  /// Handles one of the transport's own messages. A message that no rank of this program sends is an error of the run.
   void obey(Message message) {
     try {
       MessageReader reader(message.bytes, message.from);
@@ -194,7 +194,7 @@ class MpiTransport::Engine {
       if (other != rank) enqueue({other, own_tag, message});
   }
 
-  /// Rank 0: the first error that it receives becomes the run's.
+  /// Called on rank 0: the first error that it receives becomes the run's error.
   void decide(const scene::Error& error) {
     if (mailboxes.failed()) return;
     tell_all(error_message(MessageKind::verdict, error));
@@ -238,13 +238,13 @@ class MpiTransport::Engine {
       enqueue({0, own_tag, error_message(MessageKind::fault, *fault)});
       deadline_ = Clock::now() + patience_;
     }
-    // Rank 0 gives up first; the others only if it cannot.
+    // Rank 0 gives up first; the other ranks give up only if rank 0 cannot.
     if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(4)))
       give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
   }
 
-  /// Ends what cannot end in an orderly way: the process, or, with a caller's communicator, this rank's part in the
-  /// run.
+  /// Called when an orderly end is impossible. Ends the process or, with a caller's communicator, only this rank's part
+  /// in the run.
   void give_up(const scene::Error& error) {
     if (borrowed_) {
       mailboxes.fail(error);
@@ -255,13 +255,13 @@ class MpiTransport::Engine {
     std::_Exit(static_cast<int>(error.code()));
   }
 
-  /// Sends `done` once all of this rank's messages have left; rank 0 answers with `clear`.
+  /// Sends `done` once all messages of this rank have been sent; rank 0 answers with `clear`.
   void settle_end() {
     {
       const std::lock_guard lock(mutex_);
       if (!finishing_) return;
-      // A stalled rank receives nothing and never sends `done`, and MPI cannot end without it. Once the others have had
-      // time to receive the error, this rank reports it and leaves the rest to the launcher.
+      // A stalled rank receives nothing and never sends `done`, and MPI cannot end without this rank. Once the other
+      // ranks have had time to receive the error, this rank reports the error and leaves the rest to the launcher.
       if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
         give_up(*mailboxes.error());
       if (given_up_) return;

@@ -14,7 +14,7 @@ struct Lengths {
 constexpr Lengths idle{microseconds(100), microseconds(500), microseconds(2000)};
 constexpr Lengths working{microseconds(2000), microseconds(2000), microseconds(5000)};
 
-// When other ranks ring on sending.
+// Longest nap when other ranks ring the bell after sending.
 constexpr microseconds longest_with_bells(20'000);
 
 }  // namespace
