@@ -18,7 +18,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Merges runs, few per pixel, which it composites front to back.
+/// Merges runs and composites them front to back. A pixel has few runs.
 class RunMerger final : public TileMerger {
  public:
   RunMerger(const MergeContext& context, const scene::PixelRect& rect)
@@ -89,20 +89,21 @@ class RunMerger final : public TileMerger {
  private:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  /// RunRecord, and the index of the previous run of its pixel.
+  /// A RunRecord, and the index of the previous run of its pixel.
   struct Run {
     double front;
     float thickness, red, green, blue, opacity;
     std::uint32_t next = none;
   };
 
-  /// The composited runs, and the end of the farthest one.
+  /// A pixel with the composited runs, and the end of the farthest of these runs.
   struct Pixel : MergedPixel {
     double reach = -std::numeric_limits<double>::infinity();
     float opacity_to_reach = 0;
   };
 
-  /// An ascending part, read pixel by pixel in parallel with the others. Its single segments are not read here.
+  /// An ascending part, which is read pixel by pixel, in parallel with other parts. Its single segments are not read
+  /// here.
   struct Stream {
     explicit Stream(const exchange::TilePart& part)
         : records(part.records), reader(records.bytes()), tile(part.tile), segments(part.segments) {
@@ -116,7 +117,7 @@ class RunMerger final : public TileMerger {
       if (header.pixel == none || (before != none && header.pixel <= before)) refuse(tile);
       if (header.segments != 0 && !segments) refuse(tile);
     }
-    exchange::Records records;  ///< keeps the bytes
+    exchange::Records records;  ///< keeps the bytes in memory
     exchange::RecordReader reader;
     std::uint32_t tile;
     bool segments;
@@ -140,7 +141,7 @@ class RunMerger final : public TileMerger {
             run.opacity};
   }
 
-  /// Stores a part's single segments, and its other runs too if `runs`.
+  /// Stores a part's single segments and, if `runs` is set, its other runs too.
   void push_records(const exchange::TilePart& part, bool runs) {
     exchange::RecordReader reader(part.records.bytes());
     single_.clear();
@@ -170,10 +171,10 @@ class RunMerger final : public TileMerger {
     stream.read_header();
   }
 
-  /// Composites the pixel's runs before `final_depth`, front to back. Leaves all runs sorted; returns the index of the
-  /// first one that is not composited.
+  /// Composites the pixel's runs before `final_depth`, front to back. Leaves all runs sorted, and returns the index of
+  /// the first run that is not composited.
   std::size_t composite(double final_depth, Pixel& pixel) {
-    // By all fields: equal runs are interchangeable, so the order of arrival has no effect.
+    // Runs are compared by all fields: equal runs are interchangeable, so the order of arrival has no effect.
     const auto before = [](const Run& a, const Run& b) {
       if (a.front != b.front) return a.front < b.front;
       const auto key = [](const Run& run) {
@@ -198,8 +199,8 @@ class RunMerger final : public TileMerger {
     return at;
   }
 
-  /// Cells overlap if a run begins before the previous one ends: then neither order of the two is right. A wrong order
-  /// changes a pixel by at most the product of their opacities.
+  /// Records whether cells overlap: a run begins before the previous run ends. Neither order of the two is then right.
+  /// A wrong order changes a pixel by at most the product of their opacities.
   void note_overlap(const Run& run, Pixel& pixel) const {
     constexpr double negligible = 1e-7, rounding = 0x1p-20;
     // On the lattice, ends that should agree differ by some steps if one of two cells was projected in double
@@ -214,7 +215,7 @@ class RunMerger final : public TileMerger {
     if (back > pixel.reach) pixel.reach = back, pixel.opacity_to_reach = run.opacity;
   }
 
-  /// Integrates runs of one segment, with the same bits as their projector would.
+  /// Integrates runs of one segment, with the same bits as the projector of the segment would.
   void integrate_single() {
     if (single_.empty()) return;
     batch_.reserve(single_.size());
@@ -238,7 +239,7 @@ class RunMerger final : public TileMerger {
     }
   }
 
-  /// The field's value at the front, also if there is a surface.
+  /// Returns the field's value at the front of a segment, even if the segment begins at a surface.
   [[nodiscard]] float first_scalar(const projection::LatticeSegment& segment) const {
     if (!projection::is_crossing(segment.scalar_front)) return segment.scalar_front;
     const std::uint32_t number = projection::crossing_of(segment.scalar_front).number;
@@ -263,12 +264,13 @@ class RunMerger final : public TileMerger {
   std::uint64_t budget_;
   scene::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<Pixel> pixels_;            ///< used once runs have been composited before the last advance()
-  std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run in order of arrival, which links to the others
+  std::vector<Pixel> pixels_;  ///< used after an advance() before the last one has composited runs
+  /// For each pixel, the run that arrived last; each run links to the previous one.
+  std::vector<std::uint32_t> first_of_;
   std::vector<Run> runs_;
-  std::vector<Run> here_;  ///< those of one pixel
+  std::vector<Run> here_;  ///< runs of one pixel
   std::vector<Stream> streams_;
-  std::uint64_t in_streams_ = 0;  ///< number of runs
+  std::uint64_t in_streams_ = 0;  ///< number of runs that are still in `streams_`
   scene::Image image_;
   struct Single {
     std::uint32_t pixel;

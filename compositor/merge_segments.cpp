@@ -23,8 +23,8 @@ scene::Error malformed(std::uint32_t tile) {
           fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
 }
 
-/// Merges segments: sorted, integrated and composited here, by the sinks that do it in a single process. A derived
-/// class for each kind of record adds the segments to the stores.
+/// Merges segments. The sinks that sort, integrate and composite segments in a single process do the same here. A
+/// derived class for each kind of record adds the segments to the stores.
 template <class Encoding>
 class SegmentMerger : public TileMerger {
  public:
@@ -41,7 +41,7 @@ class SegmentMerger : public TileMerger {
   }
 
  protected:
-  /// The rectangle of one store. It has no sink until it is opened.
+  /// The rectangle of one store. It has no sink until the store is opened.
   struct Square {
     scene::PixelRect rect;
     typename Encoding::Store store;
@@ -74,7 +74,7 @@ class SegmentMerger : public TileMerger {
     square.sink->start(square.rect);
   }
 
-  /// The first depth that is not before `depth`, in the encoding.
+  /// Returns the first depth of the encoding that is not before `depth`.
   [[nodiscard]] virtual typename Encoding::Depth first_from(double depth) const = 0;
 
   MergeContext context_;
@@ -153,7 +153,7 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
       throw malformed(tile);
   }
 
-  /// Makes room for `more` segments.
+  /// Returns the store's segments, with room for `more` segments.
   projection::RaySegments& reserve(std::size_t more) {
     projection::RaySegments& held = squares_[0].store.segments;
     const std::size_t segments = held.size + more;
@@ -170,8 +170,8 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
   }
 };
 
-/// The paper's tuples, whose key is only the back. Equal ones are ordered by projector, then by arrival, which is the
-/// order of cells.
+/// Merges the paper's tuples, whose key is only the back. Equal tuples are ordered by projector, then by arrival, which
+/// is the order of cells.
 class TupleMerger final : public ChainMerger {
  public:
   TupleMerger(const MergeContext& context, const scene::PixelRect& rect) : ChainMerger(context, rect, Key::back) {}
@@ -193,8 +193,8 @@ class TupleMerger final : public ChainMerger {
   std::uint32_t arrivals_ = 0;
 };
 
-/// Lattice segments: one store for each square of the tile, opened by its first segment, because a large tile has many
-/// squares, most of them empty at any time.
+/// Merges lattice segments. There is one store for each square of the tile; the first segment of a square opens its
+/// store, because a large tile has many squares, most of them empty at any time.
 class WindowMerger final : public SegmentMerger<LatticeEncoding> {
  public:
   WindowMerger(const MergeContext& context, const scene::PixelRect& rect)
@@ -230,7 +230,7 @@ class WindowMerger final : public SegmentMerger<LatticeEncoding> {
  private:
   static constexpr std::size_t first_capacity = 8;  ///< segments per pixel
 
-  /// The position of a pixel of the tile.
+  /// The position of a pixel of the tile in the squares.
   struct Place {
     std::uint32_t square, pixel;
   };

@@ -60,7 +60,7 @@ void ListPixels::integrate(const Lists& lists, double final_depth) {
   if (!crossings_.empty()) light_crossings(*scene_.surfaces, crossings_, batch_);
 }
 
-/// Lights the batch of these lists. Crossings, whose light is set later, stay unchanged.
+/// Lights the batch of these lists. The light of crossings is set later, so crossings stay unchanged.
 void ListPixels::light_matter(const Lists& lists, double final_depth) {
   std::size_t next = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {
@@ -131,7 +131,8 @@ void ListPixels::add(const Lists& lists, double final_depth) {
       run.optical_depth += batch_.optical_depth[k];
       run.transmittance *= batch_.transmittance[k];
       transmittance *= batch_.transmittance[k];
-      // After each segment, not each batch: where a ray ends must not depend on how segments were batched.
+      // This is decided after each segment, not after each batch: where a ray ends must not depend on how segments were
+      // batched.
       open = !closes_ || transmittance * scene_.left_out_per_transmittance >= termination_error;
     }
     if (runs && !open) end(run);

@@ -40,7 +40,7 @@ HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
           BitCast(df, InterleaveLower(wide, high01, high23)), BitCast(df, InterleaveUpper(wide, high01, high23))};
 }
 
-/// `lanes` / 4 of the segments of load_segments(): lanes first, first + 4, first + 8...
+/// Loads `lanes` / 4 of the segments of load_segments(): those of lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
@@ -53,13 +53,13 @@ HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const 
   }
 }
 
-/// Loads into every lane the segment given by its slot, counted from list[lane].
+/// Loads one segment into every lane. Its slot is counted from list[lane].
 HWY_INLINE SegmentLanes load_segments(const projection::LatticeSegment* list, const std::int32_t* slots) {
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
 }
 
-/// The pixels [pixel, pixel + lanes) of a square.
+/// Composites the pixels [pixel, pixel + lanes) of a square.
 template <TableForm form>
 class PixelGroup {
  public:
@@ -79,8 +79,8 @@ class PixelGroup {
                                                 state_.order);
   }
 
-  /// Loads the segments of the rows [from, to) before `final_step`, in open pixels; for runs, it stores where they end.
-  /// Returns the end of the loaded rows: behind the last one with a final segment.
+  /// Loads the segments of the rows [from, to) that are before `final_step` and in open pixels; for runs, it stores
+  /// where they end. Returns the end of the loaded rows, which is after the last row with a final segment.
   template <bool runs, bool with_surfaces>
   HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step,
                               const scene::SurfaceSet* surfaces) {
@@ -119,11 +119,11 @@ class PixelGroup {
       light_.put_segment(s, length, table_.locate(s.scalar_front, s.scalar_back >= s.scalar_front),
                          (row - from) * lanes);
       if constexpr (runs) {
-        // A lane that is in no run begins one in the first of these rows, or takes nothing from any: lists have no
-        // gaps.
+        // A lane that is not in a run begins one in the first of these rows, or takes no segment from any of them,
+        // because lists have no gaps.
         if (row == from) run_back = IfThenElse(And(takes, run_back == none), front, run_back);
         widest = Max(widest, Abs(IfThenElseZero(takes, front - run_back)));
-        // The depths of irregular cells differ by a few steps: the end of a run never decreases.
+        // The depths of irregular cells differ by a few steps, so the end of a run must never decrease.
         run_back = IfThenElse(takes, Max(run_back, s.back), run_back);
       }
     }
@@ -145,7 +145,8 @@ class PixelGroup {
     done_ = Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
-      // In three passes, with dependency chains short enough for a processor to work on several rows at once.
+      // There are three passes, whose dependency chains are short enough for a processor to work on several rows at
+      // once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
       if (HWY_UNLIKELY(lights_ != nullptr)) light_.light_matter(to - from);
@@ -178,8 +179,8 @@ class PixelGroup {
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
     const auto gone = static_cast<std::uint64_t>(GetLane(SumOfLanes(d, count - left)));
     if (most == 0) return gone;
-    // The same number for each lane, so that no branch depends on one: elements that are not a lane's own are behind
-    // its list's end.
+    // Each lane uses the same number, so that no branch depends on one: elements that do not belong to a lane are after
+    // the end of its list.
     alignas(64) std::int32_t first[most_lanes];
     Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
@@ -205,8 +206,8 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
-  projection::SegmentLight* lights_;  ///< null: not lit
-  VI done_ = Zero(DI());              ///< segments of each lane that were final
+  projection::SegmentLight* lights_;  ///< null: segments have no lights
+  VI done_ = Zero(DI());              ///< for each lane, the number of segments that were final
 };
 
 template <TableForm form>

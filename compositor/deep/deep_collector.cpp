@@ -14,7 +14,7 @@ void DeepCollector::add(const scene::PixelRect& rect, std::vector<std::uint32_t>
                         std::vector<scene::DeepImageSample> samples) {
   if (samples.empty()) return;
   const std::lock_guard lock(mutex_);
-  // Twice, because image() copies the samples to sort them.
+  // Samples count twice, because image() copies them to sort them.
   bytes_ += 2 * samples.size() * sizeof(scene::DeepImageSample) + counts.size() * sizeof(std::uint32_t);
   if (bytes_ > most_bytes_)
     throw scene::Error(scene::ErrorCode::system_failure,

@@ -11,7 +11,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// A piece below this is treated as light only: its alpha is too small to divide by.
+/// A piece with less optical depth is treated as light only: its alpha is too small to divide by.
 constexpr double least_optical_depth = 1e-30;
 
 double alpha(double optical_depth) { return -std::expm1(-optical_depth); }
@@ -23,7 +23,7 @@ bool DeepMerger::extend(const DeepSample& piece) {
   const double joint = sample_.back - sample_.front;
   const double depth = sample_.optical_depth + piece.optical_depth;
   if (depth > most_depth_) return false;
-  // The quantity in which light is linear: alpha, or depth if nothing absorbs.
+  // The quantity in which light is linear: alpha or, if nothing absorbs, depth.
   const double at_joint = absorbs_ ? alpha(sample_.optical_depth) : joint, at_end = absorbs_ ? alpha(depth) : end;
   double slope_low = slope_low_, slope_high = slope_high_;
   if (absorbs_) {

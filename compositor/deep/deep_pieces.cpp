@@ -41,12 +41,12 @@ void PieceCutter::cut_linear(const DeepPiece& stretch, const Optics& a, const Op
   double color_change = 0;
   for (int c = 0; c < 3; ++c) color_change = std::max(color_change, std::abs(b.color[c] - a.color[c]));
 
-  // The error of a piece with the fraction h of this length is at most `steepness` h^2.
+  // A piece that is the fraction h of this length has an error of at most `steepness` h^2.
   const double bend = std::abs(b.extinction - a.extinction) * length / 8;
   const double steepness = independent_
                                ? bend + length * color_change / 4 + length * most * bend / 2
                                : (1 + most) * bend + color_change * std::max(a.extinction, b.extinction) * length / 4;
-  const double hidden = independent_ ? 1 + most * length : 1 + most;  // a bound of any error at transmittance 1
+  const double hidden = independent_ ? 1 + most * length : 1 + most;  // upper bound of any error at transmittance 1
   const auto at = [&](double x) {
     return x >= 1 ? std::pair(stretch.back, stretch.scalar_back)
                   : std::pair(stretch.front + (stretch.back - stretch.front) * x,
@@ -60,7 +60,8 @@ void PieceCutter::cut_linear(const DeepPiece& stretch, const Optics& a, const Op
     if (hidden > allowed) {
       double h = steepness > 0 ? std::sqrt(allowed / steepness) : 1;
       if (independent_ && bend > 0) h = std::min(h, 1 / std::sqrt(bend));  // d <= 1
-      // The optical depth of h is length (k h + rise h^2 / 2); if the extinction decreases, the first term bounds it.
+      // The optical depth of the fraction h is length (k h + rise h^2 / 2); if the extinction decreases, the first term
+      // is an upper bound.
       const double k = a.extinction + (b.extinction - a.extinction) * x;
       const double most_depth =
           most_optical_depth(accuracy_, transmittance, independent_ ? 2 * most * length : most) / length;
@@ -93,8 +94,8 @@ void PieceCutter::cut(const DeepPiece& segment, double length_per_depth, double&
     const Optics all = optics(interval, s0);
     return cut_linear(segment, all, all, length_per_depth, transmittance, pieces);
   }
-  // Knots strictly inside the segment's scalars; the two knots of a step cut at the same point, with nothing between
-  // them.
+  // The knots strictly inside the segment's range of scalars. The two knots of a step cut at the same point, with
+  // nothing between the cuts.
   const double low = std::min(s0, s1), high = std::max(s0, s1);
   const auto first =
       static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), low, value_above) - knots_.begin());

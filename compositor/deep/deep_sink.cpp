@@ -9,7 +9,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Pieces that are integrated together: they fit into a core's second-level cache.
+/// Number of pieces that are integrated together: they fit into a core's second-level cache.
 constexpr std::size_t batch_pieces = 8192;
 
 }  // namespace
@@ -89,7 +89,7 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
   timer.record("composite");
 }
 
-/// Adds a surface, which is a point in depth. It waits among the pieces, which are in order for each pixel.
+/// Adds a surface, which is a point in depth. It waits in the list of pieces, which are in order for each pixel.
 void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value) {
   crossings_.push_back({pieces_.size(), crossing, value});
   pieces_.push_back({depth, depth, 0, 0});

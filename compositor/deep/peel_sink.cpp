@@ -11,7 +11,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Segments that are integrated together: they fit into a core's second-level cache.
+/// Number of segments that are integrated together: they fit into a core's second-level cache.
 constexpr std::size_t batch_segments = 8192;
 
 }  // namespace

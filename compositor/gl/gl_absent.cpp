@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built instead of the sources that use a device with TESSERA_GL=OFF.
+// Built with TESSERA_GL=OFF, instead of the sources that use a device.
 #include "compositor/gl/gl_compositor.hpp"
 #include "scene/error.hpp"
 

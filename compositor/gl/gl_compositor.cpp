@@ -100,8 +100,9 @@ class GlCompositor::Worker {
     }
   }
 
-  /// Jobs of one frame, as many as fit one batch. Waits for some if `wait`. Returns none at the end, if there are none
-  /// now, or if cells are to be counted (counting_): this has priority, because their tile's jobs follow it.
+  /// Returns jobs of one frame, as many as fit in one batch. If `wait` is set, waits for jobs. Returns no jobs at the
+  /// end, if there are none now, or if cells are to be counted (counting_): counting has priority, because the jobs of
+  /// the cells' tile follow it.
   Batch next(bool wait) {
     std::unique_lock lock(mutex_);
     if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty() || !counts_.empty(); });

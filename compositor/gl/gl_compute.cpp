@@ -22,11 +22,11 @@ constexpr std::size_t group_of_fragments = 256, group_of_lists = 64;  // the sha
 
 GLuint groups(std::size_t count, std::size_t size) { return static_cast<GLuint>((count + size - 1) / size); }
 
-/// Compute shaders on storage buffers: integrate every segment, sort the lists, composite each front to back. For jobs
-/// with cells, the cells' segments are first rasterized into the lists, between the given ones.
+/// Compute shaders on storage buffers: they integrate every segment, sort the lists, and composite each list front to
+/// back. In jobs with cells, the cells' segments are first rasterized into the lists, between the given fragments.
 ///
-/// Two batches are in flight. Mapped memory for uploads and results is double; the shaders' working memory is not,
-/// because the device executes its commands in order.
+/// Two batches are in flight. There are two mapped memories for uploads and results, but only one working memory for
+/// the shaders, because the device executes its commands in order.
 class ComputeKernel final : public GlKernel {
  public:
   ComputeKernel(const gl::Context& context, const GlSettings& settings, scene::Trace* trace)
@@ -134,11 +134,11 @@ class ComputeKernel final : public GlKernel {
     gl::StageTimer timer;
     std::vector<Counts> jobs;
     std::size_t lists = 0, table_bytes = 0;
-    std::size_t pixels = 0;  ///< in jobs with cells
-    GLuint first_list = 0;   ///< in the tables, in entries of four integers
+    std::size_t pixels = 0;  ///< number of pixels in jobs with cells
+    GLuint first_list = 0;   ///< first list in the tables, counted in entries of four integers
   };
 
-  /// Compiled when the first cells arrive.
+  /// The lists are compiled when the first cells arrive.
   GlCellLists& cell_lists() {
     if (!cell_lists_) cell_lists_.emplace(*context_, settings_.batch_cells, trace_);
     return *cell_lists_;
@@ -147,7 +147,8 @@ class ComputeKernel final : public GlKernel {
   struct Fragments {
     std::size_t all, given;
   };
-  /// Writes the keys, values and tables of all jobs one after the other, and where the device's own fragments go.
+  /// Writes the keys, values and tables of all jobs one after the other, and the positions of the fragments that the
+  /// device makes.
   Fragments upload(std::span<GlJob> jobs, Slot& slot) {
     std::size_t fragments = 0, given = 0;
     lists_.clear();
@@ -224,8 +225,8 @@ class ComputeKernel final : public GlKernel {
   std::size_t next_ = 0;
   std::deque<std::size_t> under_way_;
   std::vector<sorting::GlList> lists_;
-  std::vector<std::uint32_t> list_given_;  ///< by list: the number of its fragments that came with the job
-  std::vector<std::uint32_t> first_;       ///< by job: the first fragment of its lists
+  std::vector<std::uint32_t> list_given_;  ///< for each list, the number of fragments that came with the job
+  std::vector<std::uint32_t> first_;       ///< for each job, the first fragment of its lists
   std::optional<GlCellLists> cell_lists_;
 };
 

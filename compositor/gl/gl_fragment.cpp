@@ -15,8 +15,9 @@ namespace {
 
 using sorting::GlBitonicTexture;
 
-/// Juliachs et al. 2007, 4.3: a tile is composited scanline by scanline. The lists of a scanline's pixels are sorted in
-/// a texture, a row each, and its columns are blended over one another from back to front in the tile's framebuffer.
+/// The method of Juliachs et al. 2007, 4.3: a tile is composited scanline by scanline. The lists of a scanline's pixels
+/// are sorted in a texture, one list per row; then the texture's columns are blended over one another from back to
+/// front in the tile's framebuffer.
 ///
 /// In addition to the paper's framebuffer, a second one stores where each ray first meets optical depth.
 class FragmentKernel final : public GlKernel {
@@ -71,8 +72,8 @@ class FragmentKernel final : public GlKernel {
     return lights;
   }
 
-  /// Neighbouring pixels of a scanline are composited together: the whole scanline, as in the paper, unless the texture
-  /// does not have room for it or the lists differ so much in length that most elements would be null.
+  /// Composites neighbouring pixels of a scanline together: the whole scanline, as in the paper, unless the texture
+  /// does not have enough room or the lists differ so much in length that most elements would be null.
   void composite_line(const GlJob& job, Lists lists, int line) {
     constexpr int most_padding = 3;  // powers of two
     const auto width = static_cast<std::uint32_t>(job.fragments.width);

@@ -23,18 +23,20 @@
 namespace tessera::compositor {
 namespace {
 
-/// This many fragments of a tile wait for the rest of it before the final ones go to the device.
+/// Final fragments of a tile go to the device only when at least this number of its fragments is waiting, or when the
+/// tile is complete.
 constexpr std::size_t patient_fragments = 1 << 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A float's bits as an integer in the same order.
+/// Returns a float's bits as an integer with the same order.
 std::uint32_t ordered(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-/// A scalar in the table's units: as returned by lane_scalar() in the range of the transfer function's knots, so that a
-/// value at a step stays there. Beyond it, where rounding to whole units has no benefit, it is not rounded.
+/// Returns a scalar in the table's units. In the range of the transfer function's knots, it is the result of
+/// lane_scalar(), so that a value at a step stays there. Beyond that range, where rounding to whole units has no
+/// benefit, it is not rounded.
 float device_scalar(double value, const scene::Lattice& units) {
   const double n = (value - units.scalar_origin) / units.scalar_unit;
   return std::abs(n) < scene::Lattice::limit ? integrals::lane_scalar(value, units.scalar_origin, units.scalar_unit)
@@ -115,7 +117,7 @@ class GlMerger final : public TileMerger {
           by_back_ = true;
           const auto [front, back] =
               projection::depths_of(record.tuple.z_back, record.tuple.length, context_.longest_edge);
-          // As in TupleMerger: equal ones are ordered by projector, then by arrival.
+          // As in TupleMerger, equal tuples are ordered by projector, then by arrival.
           add(record.pixel, front, back, record.tuple.scalar_front, record.tuple.scalar_back,
               static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff));
           break;
@@ -151,15 +153,16 @@ class GlMerger final : public TileMerger {
 
  private:
   struct Fragment {
-    double front, back;          ///< steps of the lattice, or planar depth
+    double front, back;          ///< in steps of the lattice, or planar depth
     std::array<float, 4> value;  ///< GlFragments
     std::uint32_t pixel, tie;
-    float along = 0;  ///< of a run's light: where it begins, 0 at the front to 1 at the back
+    float along = 0;  ///< for the light of a run: where it begins, from 0 at the front to 1 at the back
   };
 
   [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
-  /// Depths or scalars that do not fit the lattice (very steep or thick transfer functions) exceed the float accuracy
-  /// of `exact`. These segments are integrated here, in double precision; the device sorts and composites their light.
+  /// Whether segments are integrated here, in double precision; the device then only sorts and composites their light.
+  /// This is necessary if depths or scalars do not fit the lattice (very steep or thick transfer functions), because
+  /// they then exceed the float accuracy of `exact`.
   [[nodiscard]] bool integrates_here() const {
     return !on_lattice() && rules_.samples == 0 && context_.device->method() == GlMethod::compute;
   }
@@ -209,7 +212,7 @@ class GlMerger final : public TileMerger {
     fragments_.push_back(fragment);
   }
 
-  /// The batch's light replaces the values of the last fragments.
+  /// Replaces the values of the last fragments by the light of the batch.
   void integrate_batch() {
     if (batch_.size == 0) return;
     context_.integrator->integrate(batch_);
@@ -239,8 +242,8 @@ class GlMerger final : public TileMerger {
     }
   }
 
-  /// Converts depths to 32-bit integers, in the finest power-of-two steps that span all of them; on the lattice, in its
-  /// own steps.
+  /// Converts depths to 32-bit integers: on the lattice, in the lattice's steps; otherwise, in the finest power-of-two
+  /// steps that span all depths.
   struct Steps {
     double origin = 0, per_unit = 1;
     [[nodiscard]] std::uint32_t of(double depth) const {
@@ -259,12 +262,12 @@ class GlMerger final : public TileMerger {
     return {low, std::exp2(std::floor(std::log2(4294967295.0 / (high - low))))};
   }
 
-  /// Fragments and the cells' segments, by pixel.
+  /// The fragments, and the cells' segments, of each pixel.
   struct ByPixel {
-    std::vector<std::uint32_t> order;        ///< indices of fragments
-    std::vector<std::uint32_t> begin_given;  ///< the fragments of pixel p are order[begin_given[p]] to
-                                             ///< order[begin_given[p + 1]]
-    std::vector<std::uint32_t> begin;        ///< the same, including the segments behind them
+    std::vector<std::uint32_t> order;  ///< indices of fragments
+    /// The fragments of pixel p are order[begin_given[p]] to order[begin_given[p + 1]].
+    std::vector<std::uint32_t> begin_given;
+    std::vector<std::uint32_t> begin;  ///< the same, but including the cells' segments, which follow the fragments
     Steps steps;
     [[nodiscard]] std::uint32_t count(std::size_t p) const { return begin[p + 1] - begin[p]; }
     [[nodiscard]] std::uint32_t given(std::size_t p) const { return begin_given[p + 1] - begin_given[p]; }
@@ -346,8 +349,9 @@ class GlMerger final : public TileMerger {
     }
   }
 
-  /// The end of a portion: whole rows of pixels from `first` on, as many as comfortable_fragments() allows. If the
-  /// device fills lists and one row is too large, as many of its pixels instead.
+  /// Returns the end of a portion that begins at `first`: whole rows of pixels, as many as comfortable_fragments()
+  /// allows. If the device fills lists and one row is too large, returns the end of as many pixels of this row as are
+  /// allowed.
   [[nodiscard]] std::size_t portion_end(const ByPixel& by, std::size_t first) const {
     const auto width = static_cast<std::size_t>(rect_.width());
     const std::size_t row_end = first - first % width + width;
@@ -425,12 +429,12 @@ class GlMerger final : public TileMerger {
         });
   }
 
-  /// Counts segments of cells, which no projector has counted.
+  /// Counts segments of cells; no projector has counted them.
   void count(std::uint64_t segments) const {
     if (context_.segments != nullptr) *context_.segments += segments;
   }
 
-  /// Adds light that is all behind the pixel's present contents.
+  /// Adds light; all of it is behind the pixel's present contents.
   void add_light(const GlLight& light, double first_depth, MergedPixel& pixel) const {
     if (!pixel.open) return;
     if (std::isinf(pixel.first_depth)) pixel.first_depth = first_depth;
@@ -438,7 +442,7 @@ class GlMerger final : public TileMerger {
     pixel.open = (1 - pixel.opacity) * weight_ >= context_.integrator->termination_error();
   }
 
-  /// For GlLight::rasterized_one.
+  /// The depth at which a GlLight::rasterized_one becomes visible.
   [[nodiscard]] double visible_depth(const GlLight& light, const Steps& steps) const {
     const double along = light.along;
     const double at = steps.origin + ((1 - along) * light.front + along * light.back) / steps.per_unit;
@@ -459,9 +463,10 @@ class GlMerger final : public TileMerger {
   double weight_;
   GlRules rules_;
   std::vector<MergedPixel> pixels_;
-  std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
+  std::vector<double> length_;  ///< for each pixel, world length per unit of planar depth
   std::vector<Fragment> fragments_;
-  std::shared_ptr<GlCells> cells_ = std::make_shared<GlCells>();  ///< wait for all other parts of the tile
+  /// Cells, which wait until all other parts of the tile have arrived.
+  std::shared_ptr<GlCells> cells_ = std::make_shared<GlCells>();
   integrals::SegmentBatch batch_;
   bool by_back_ = false;
   std::uint32_t arrivals_ = 0;
