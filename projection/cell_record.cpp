@@ -35,7 +35,7 @@ void rasterize_records(std::span<const CellRecord> cells, const scene::PixelRect
   RasterCounts counts;
   for (; !cells.empty(); cells = cells.subspan(std::min(cells_at_once, cells.size()))) {
     const auto batch = cells.first(std::min(cells_at_once, cells.size()));
-    scene::TetMesh mesh;  // four vertices per cell; the order of corners is the same in all cells
+    scene::TetMesh mesh;  // has four vertices per cell; the order of corners is the same in all cells
     std::vector<PixelVertex> vertices;
     for (const CellRecord& cell : batch) {
       const auto first = static_cast<std::uint32_t>(vertices.size());

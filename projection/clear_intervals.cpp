@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double above(double v) { return std::nextafter(v, infinity); }
 double below(double v) { return std::nextafter(v, -infinity); }
 
-/// The index of a double in ascending order.
+/// Returns an integer for a double, such that the integers have the order of the doubles.
 std::int64_t number_of(double v) {
   const auto bits = std::bit_cast<std::int64_t>(v);
   return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;
@@ -25,7 +25,8 @@ double numbered(std::int64_t n) {
   return std::bit_cast<double>(n >= 0 ? n : std::numeric_limits<std::int64_t>::min() - n);
 }
 
-/// The last double of [low, high] at which `holds`, which changes once, from true at `low` to false at `high`.
+/// Returns the last double of [low, high] at which `holds` is true. `holds` must change once, from true at `low` to
+/// false at `high`.
 template <class Predicate>
 double last_where(double low, double high, Predicate holds) {
   std::int64_t yes = number_of(low), no = number_of(high);
@@ -62,7 +63,7 @@ ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emi
     if (i == knots.size()) break;
     const scene::Knot& next = knots[i];
     const double low = above(at.value), high = below(next.value);
-    if (low > high) continue;  // neighbours: there is no double between them
+    if (low > high) continue;  // the two are neighbours: there is no double between them
     if (!shows(at) && !shows(next)) {
       add(low, high, true);
     } else if (!shows(at) && clear_at(low)) {
@@ -88,7 +89,7 @@ void ClearIntervals::part(std::span<const double> boundaries) {
   for (Interval rest : intervals_) {
     for (auto b = std::upper_bound(boundaries.begin(), boundaries.end(), rest.low);
          b != boundaries.end() && *b <= rest.high; ++b) {
-      if (*b == rest.low) continue;  // the same boundary again
+      if (*b == rest.low) continue;  // the boundary occurs twice
       parts.push_back({rest.low, below(*b)});
       rest.low = *b;
     }

@@ -40,7 +40,7 @@ HWY_INLINE CullVertex cull_vertex(const PixelVertex& v, double scalar, double de
   out.y = static_cast<float>(v.y / v.w);
   const double size = (v.depth < 0 ? -v.depth : v.depth) + (depth_origin < 0 ? -depth_origin : depth_origin);
   const double depth = (v.depth - depth_origin) - 4e-16 * size;
-  // Subtract in advance what rounding to float may add.
+  // Subtracts in advance what rounding to float may add.
   const double lower = depth - (depth < 0 ? -depth : depth) * 0x1p-23 - 0x1p-149;
   out.depth = static_cast<float>(lower < 3e38 ? lower : 3e38);
   out.scalar = static_cast<float>(scalar);
@@ -84,13 +84,13 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
 
 HWY_INLINE std::uint64_t bits_of(MF mask) { return lane_bits(mask); }
 
-/// Range [low, high) of pixels whose centres are in [least, most], and whether floats decide it with certainty.
+/// Range [low, high) of pixels whose centres are in [least, most], and whether floats determine it with certainty.
 struct Covered {
   VF low, high;
-  MF empty, sure;  ///< empty: with certainty
+  MF empty, sure;  ///< `empty` is set only with certainty
 };
 
-/// Ten times the rounding error of a float pixel position, of what is added to it here, and of footprint()'s slack.
+/// Ten times the rounding errors of a float pixel position, of what is added to it here, and of footprint()'s slack.
 HWY_INLINE VF slack_of(VF pixel) { return MulAdd(Abs(pixel), Set(DF(), 0x1p-22f), Set(DF(), 1e-6f)); }
 
 HWY_INLINE Covered covered(VF least, VF most, VF side) {
@@ -105,7 +105,7 @@ HWY_INLINE Covered covered(VF least, VF most, VF side) {
   return {first, last, first >= last, And(first_sure, last_sure)};
 }
 
-/// Boxes of `count` cells, one cell at a time: smallest and largest x, y, depth and scalar.
+/// Returns the boxes of `count` cells, computed one cell at a time: smallest and largest x, y, depth and scalar.
 HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std::size_t count, float* low,
                          float* high) {
   const hn::FixedTag<float, 4> d;
@@ -128,7 +128,7 @@ struct Boxes {
   }
 };
 
-/// Whether the transfer function makes cells invisible: with certainty, or possibly.
+/// Whether the transfer function certainly makes cells invisible, and whether it possibly does.
 struct Hidden {
   MF surely, maybe;
 
@@ -149,7 +149,7 @@ struct Placed {
 
   HWY_INLINE Placed(const CullView& view, const Boxes& b) {
     const DF d;
-    // The largest depth of a vertex with this CullVertex::depth.
+    // The largest depth that a vertex with this CullVertex::depth may have.
     const auto at_most = [&](VF v) HWY_ATTR { return MulAdd(Abs(v), Set(d, 4e-7f), v) + Set(d, view.depth_slack); };
     too_near = at_most(b.depth_high) < Set(d, view.near_low);
     too_far = b.depth_low > Set(d, view.far_high);
@@ -157,7 +157,7 @@ struct Placed {
 
     const VF width = Set(d, view.width), height = Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
-    // A sum, which is NaN if one of them is.
+    // The sum is NaN if one of its terms is NaN.
     const VF widest = Abs(b.x_low) + Abs(b.x_high) + (Abs(b.y_low) + Abs(b.y_high));
     tame = widest < Set(d, 1e30f);
     empty = Or(columns.empty, rows.empty);
@@ -171,7 +171,7 @@ struct Placed {
   }
 };
 
-/// Writes the places of cells with these boxes of pixels; returns the cells that are in one tile.
+/// Writes the places of cells with these boxes of pixels. Returns the cells whose box is in one tile.
 HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed, std::uint32_t* places) {
   const DF d;
   const DI di;

@@ -16,18 +16,18 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The depth as an integer in the same order: the bits of negative floats descend as the float ascends, those of
-/// positive floats ascend.
+/// Returns the depth as an integer with the same order. (The bits of negative floats descend as the float ascends;
+/// those of positive floats ascend.)
 HWY_INLINE std::uint32_t key_of(const TileEntry& e) {
   const auto bits = std::bit_cast<std::uint32_t>(e.near_depth);
   return bits ^ ((0u - (bits >> 31)) | 0x80000000u);
 }
 
-// Average number of entries in an entry's step above which a list is sorted completely: more would make segments wait
-// in their windows.
+// If more entries than this are in an entry's step on average, the list is sorted completely: with more entries per
+// step, segments would wait too long in their windows.
 constexpr std::uint64_t crowd = 512;
 
-/// Least significant digit first, over the digits in which keys differ.
+/// Radix sort, least significant digit first, over the digits in which keys differ.
 HWY_NOINLINE DepthOrder radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
   constexpr int digit_bits = 11, digits = 3;  // three passes take less time than four with bytes
   constexpr std::uint32_t values = 1u << digit_bits;
@@ -50,7 +50,7 @@ HWY_NOINLINE DepthOrder radix_sort(TileEntry* entries, TileEntry* other, std::si
   return {{from, n}, 0};
 }
 
-/// The few entries of a short list.
+/// Sorts the few entries of a short list.
 HWY_INLINE void insertion_sort(TileEntry* entries, std::size_t n) {
   for (std::size_t i = 1; i < n; ++i) {
     const TileEntry moving = entries[i];
@@ -65,7 +65,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t*, std::size
   return n > 0 ? radix_sort(entries, other, n) : DepthOrder{};
 }
 #else
-// An entry is two lanes: its depth in the even one, its tet in the odd one.
+// An entry occupies two lanes: its depth is in the even lane, its tet in the odd one.
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 static_assert(sizeof(TileEntry) == 8);
@@ -122,7 +122,8 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   }
   if (company > n * crowd) return radix_sort(entries, other, n);
   for (i = 0; i < n; ++i) other[next[steps[i]]++] = entries[i];
-  // One step and the largest rounding error: step numbers are below 2^12, with an error of 2^-23 of themselves.
+  // The slack is one step and the largest rounding error: step numbers are below 2^12, and have a relative error of
+  // 2^-23.
   return {{other, n}, 1.01 / static_cast<double>(scale)};
 }
 #endif  // HWY_TARGET == HWY_SCALAR

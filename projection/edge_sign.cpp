@@ -11,8 +11,8 @@
 namespace tessera::projection {
 namespace {
 
-/// A sum of doubles without rounding: components do not overlap and increase in magnitude, so the last one has the
-/// sum's sign.
+/// A sum of doubles without rounding. Its components do not overlap and increase in magnitude, so the last component
+/// has the sign of the sum.
 class ExactSum {
  public:
   void add(double value) {
@@ -43,12 +43,12 @@ class ExactSum {
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : (parts_[size_ - 1] > 0 ? 1 : -1); }
 
  private:
-  // 4 triple products of 4 terms and 2 products of 2: at most 20 components.
+  // A sum has 4 triple products of 4 terms and 2 products of 2 terms: at most 20 components.
   std::array<double, 24> parts_{};
   std::size_t size_ = 0;
 };
 
-/// Sign of a * d - b * c.
+/// Returns the sign of a * d - b * c.
 int sign_2x2(double a, double b, double c, double d) {
   ExactSum sum;
   sum.add_product(a, d);
@@ -59,10 +59,10 @@ int sign_2x2(double a, double b, double c, double d) {
 constexpr double finest_step = 0x1p-32, position_precision = 0x1p-46, most_per_tangent = 0x1p22;
 constexpr double beside_reach = 0x1p46, beside_precision = 0x1p-40;
 
-/// The power of two at or below a positive number.
+/// Returns the power of two at or below a positive number.
 double power_of_two(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) & 0x7ff0000000000000u); }
 
-/// The multiple of a power of two nearest to v, which must be less than 2^51 times the power.
+/// Returns the multiple of the power of two `step` that is nearest to v; v must be less than 2^51 times `step`.
 double rounded(double v, double step) { return step > 0 ? std::nearbyint(v / step) * step : v; }
 
 }  // namespace
@@ -84,7 +84,7 @@ LineOfSight line_of_sight(const PixelVertex& v, double pixels_per_tangent) {
 double sight_error(const PixelVertex& v, double pixels_per_tangent, double most_pixels) {
   if (pixels_per_tangent == 0) return 0;
   const double size = std::max(std::abs(v.x), std::abs(v.y)), w = std::abs(v.w);
-  // Twice the half steps, because what is compared with these limits here has rounding errors of its own.
+  // The limits are twice the half steps, because the values that are compared with them here have rounding errors, too.
   if (size < 0.5 * beside_reach * w)
     return std::max(finest_step * w,
                     position_precision * std::max(size, std::min(pixels_per_tangent, most_per_tangent) * w));

@@ -16,7 +16,8 @@ bool is_at(const FaceMark& mark, double depth) { return std::abs(mark.depth - de
 double next_behind(double depth) { return std::nextafter(depth, std::numeric_limits<double>::infinity()); }
 double next_before(double depth) { return std::nextafter(depth, -std::numeric_limits<double>::infinity()); }
 
-/// Sorts marks at one depth by slope in x, those with equal slopes by slope in y, and those in one plane by number.
+/// Sorts marks at one depth by slope in x, marks with equal slopes in x by slope in y, and marks in one plane by
+/// number.
 void order_by_slope(std::span<FaceMark> marks, std::size_t axis = 0) {
   if (marks.size() < 2) return;
   if (axis == 2) {
@@ -51,8 +52,8 @@ void put_in_place(std::span<FaceMark> marks) {
   for (FaceMark& mark : marks) mark.behind = next_behind(place);
 }
 
-/// The scalar at the fraction `part` of a segment. Less than the scalar of the higher end, so that a part below a step
-/// of the transfer function keeps an end below it.
+/// Returns the scalar at the fraction `part` of a segment. It is less than the scalar of the higher end, so that a part
+/// below a step of the transfer function keeps an end below the step.
 double scalar_between(double from, double to, double part) {
   if (from == to) return from;
   const auto [low, high] = std::minmax(from, to);
@@ -69,7 +70,7 @@ void FaceMarks::reset(std::size_t pixels) {
 }
 
 void FaceMarks::sort() {
-  // By all fields: equal marks are interchangeable, so the order of the triangles has no effect.
+  // Marks are compared by all fields: equal marks are interchangeable, so the order of the triangles has no effect.
   std::sort(marks_.begin(), marks_.end(), [](const FaceMark& a, const FaceMark& b) {
     const auto key = [](const FaceMark& m) {
       return std::tie(m.pixel, m.depth, m.number, m.cosine, m.value, m.slope, m.slope_error);
@@ -128,7 +129,7 @@ void FaceMarks::cut_one(RaySegments& segments, std::size_t at, std::span<const F
   std::size_t rest = at;  // the part that is not cut yet
   for (const FaceMark& mark : marks) {
     if (is_at(mark, front)) {
-      // No remaining part is in front of the mark.
+      // The mark is in front of the remaining part.
       segments.front[rest] = mark.behind;
       if (!(segments.front[rest] < segments.back[rest])) {
         segments.front[rest] = segments.back[rest] = mark.depth;

@@ -7,19 +7,19 @@
 namespace tessera::projection {
 namespace {
 
-/// Whether all corners are in the half space through the eye beyond one side of the window. `coordinate` is
-/// PixelVertex::x or ::y; q = coordinate - side * w is linear in the point, so neither a division nor the sign of w is
+/// Whether all corners are in the half space through the eye that is outside of one side of the window. `coordinate` is
+/// PixelVertex::x or ::y. q = coordinate - side * w is linear in the point, so neither a division nor the sign of w is
 /// needed.
 bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coordinate, double side, double sign) {
   return std::all_of(corners.begin(), corners.end(),
                      [&](const PixelVertex& v) { return sign * (v.*coordinate - side * v.w) > 0; });
 }
 
-/// Pixels [first, last) of [low, high) whose centres are in the closed interval, widened by more than the rounding,
-/// including that of lines of sight (edge_sign.hpp).
+/// Returns the pixels [first, last) of [low, high) whose centres are in the closed interval, which is widened by more
+/// than the rounding errors, including those of lines of sight (edge_sign.hpp).
 std::array<int, 2> covered(double least, double most, int low, int high) {
   const double slack = 1e-7, relative = 1e-9;
-  // Positions beyond the window are so by more than their rounding; infinite positions remain comparable.
+  // Positions outside the window are outside by more than their rounding; infinite positions remain comparable.
   least = std::clamp(least, low - 2.0, high + 2.0);
   most = std::clamp(most, low - 2.0, high + 2.0);
   const double first = std::ceil(least - 0.5 - (slack + relative * std::abs(least)));

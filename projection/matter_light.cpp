@@ -16,7 +16,7 @@ namespace {
 
 constexpr double nothing = MatterLight::nothing;  // scene/shading.hpp has the same for gradients
 
-/// Takes a third of the time of std::pow.
+/// A power with a whole exponent; takes a third of the time of std::pow.
 double whole_power(double base, int exponent) {
   double result = 1;
   for (; exponent > 0; exponent /= 2, base *= base)

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int axis_bits = 21;
 
-/// Position along the curve of a cell of the 2^21 grid: Skilling's AxestoTranspose, then the bits of the three axes
-/// interleaved.
+/// Returns the position along the curve of a cell of the 2^21 grid: Skilling's AxestoTranspose, then the bits of the
+/// three axes are interleaved.
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   std::uint32_t axis[3] = {x, y, z};
   for (std::uint32_t q = 1u << (axis_bits - 1); q > 1; q >>= 1) {  // undo excess work, from the highest bit
@@ -40,7 +40,7 @@ std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 
 std::uint32_t grid_step(double offset, double longest) {
   const double step = offset / longest * (1 << axis_bits);
-  if (!(step > 0)) return 0;  // also NaN, for a box without extent
+  if (!(step > 0)) return 0;  // also true for NaN, which a box without extent gives
   return static_cast<std::uint32_t>(std::min(step, static_cast<double>((1 << axis_bits) - 1)));
 }
 
@@ -49,7 +49,8 @@ constexpr int key_bits = 128, first_digit = 16, later_digit = 8;
 
 int digit_bits(int depth) { return depth == 0 ? first_digit : later_digit; }
 
-/// Bits [depth, depth + digit_bits(depth)) of a key, counted from its highest. A digit never straddles the two words.
+/// Returns bits [depth, depth + digit_bits(depth)) of a key, counted from its highest bit. A digit is always within one
+/// of the two words.
 std::uint64_t digit(const CurveKey& key, int depth) {
   const std::uint64_t word = depth < 64 ? key.place : key.tet;
   const int bits = digit_bits(depth);
@@ -61,7 +62,7 @@ CurveKey with_digit(CurveKey key, int depth, std::uint64_t value) {
   return key;
 }
 
-/// The key with all bits from `depth` on cleared.
+/// Returns the key with all bits from `depth` on cleared.
 CurveKey prefix(const CurveKey& key, int depth) {
   const auto keep = [](std::uint64_t word, int bits) {
     return bits <= 0 ? 0 : bits >= 64 ? word : word & ~(~std::uint64_t{0} >> bits);
@@ -114,7 +115,7 @@ std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const
   return keys;
 }
 
-// A splitter may be off by the tolerance, so a part by twice that.
+// The size of a part may differ by twice the tolerance, because each of its two splitters may be off by the tolerance.
 CurveCut::CurveCut(std::uint64_t total, int parts)
     : tolerance_(total / (250 * static_cast<std::uint64_t>(parts))), splitters_(static_cast<std::size_t>(parts) - 1) {
   if (parts > 1) bins_.push_back({{0, 0}, 0});
@@ -148,7 +149,7 @@ void CurveCut::narrow(std::span<const std::uint64_t> counts) {
     const Bin& bin = bins_[open.bin];
     std::uint64_t below = bin.below;
     std::size_t d = 0;
-    // The digit at which the target is reached; the last one if there are fewer keys.
+    // Finds the digit at which the target is reached; the last digit if there are fewer keys.
     while (d + 1 < digits && below + counts[(open.bin << bits) + d] < open.target)
       below += counts[(open.bin << bits) + d++];
     const std::uint64_t inside = counts[(open.bin << bits) + d];
@@ -160,7 +161,7 @@ void CurveCut::narrow(std::span<const std::uint64_t> counts) {
       splitters_[open.splitter] = first;
     } else if (miss_behind <= tolerance_ && d + 1 < digits) {
       splitters_[open.splitter] = with_digit(bin.first, depth_, d + 1);
-    } else if (depth_ + bits == key_bits) {  // one key, as no tet occurs twice
+    } else if (depth_ + bits == key_bits) {  // the bin contains one key, because no tet occurs twice
       splitters_[open.splitter] = miss_before == 0 ? first : CurveKey{first.place, first.tet + 1};
     } else {
       if (finer.empty() || finer.back().first != first) finer.push_back({first, below});

@@ -30,11 +30,11 @@ struct Face {
 constexpr Face faces[4] = {
     {0, 1, 2, 3, 1, 0, true}, {0, 1, 3, 4, 2, 0, false}, {0, 2, 3, 5, 2, 1, true}, {1, 2, 3, 5, 4, 3, false}};
 
-/// The number of values of a segment that are linear in a cell: the scalar, and the attribute if there is one.
+/// Number of values of a segment that are linear in a cell: the scalar, and the attribute if there is one.
 template <class Segments>
 constexpr int value_count = std::is_same_v<Segments, AttributeSegments> ? 2 : 1;
 
-/// A cell after set-up. `values`: number of linear values; the scalar is first.
+/// A cell after set-up. `values` is the number of linear values; the first value is the scalar.
 template <int values>
 struct Cell {
   PixelVertex corner[4];
@@ -45,13 +45,13 @@ struct Cell {
   double certainty[6];
   bool pierceable[4];
   double pixels_per_tangent;  ///< as in ProjectedMesh
-  double error_bound;         ///< of any E at any candidate pixel
+  double error_bound;         ///< upper bound of the error of any E at any candidate pixel
   scene::PixelRect box;
 };
 
-// The difference between exact and computed E: q = X - px * W is rounded once (twice without FMA, because the product
-// px * W is also rounded), E = qx_a * qy_b - qx_b * qy_a twice more. The exact E is that of lines of sight, whose
-// positions differ from X and Y.
+// Bounds the difference between exact and computed E. q = X - px * W is rounded once (twice without FMA, because the
+// product px * W is also rounded), and E = qx_a * qy_b - qx_b * qy_a is rounded twice more. The exact E is that of
+// lines of sight, whose positions differ from X and Y.
 double error_bound_of(const PixelVertex (&corner)[4], const scene::PixelRect& box, double pixels_per_tangent) {
   constexpr double u = 0x1p-53;
   const double x0 = box.x0, x1 = box.x1, y0 = box.y0, y1 = box.y1;
@@ -82,7 +82,7 @@ HWY_INLINE Cell<values> set_up(const ProjectedMesh& projected, std::uint32_t tet
   for (bool& p : cell.pierceable) p = true;
   for (int e = 0; e < 6; ++e) {
     const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    // Without sides: both ends are on one line of sight, or the eye is on the edge (then some w <= 0).
+    // An edge has no sides if both ends are on one line of sight, or if the eye is on the edge (then some w <= 0).
     const bool one_point = (a.w == b.w && a.x == b.x && a.y == b.y) ||
                            ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5, cell.pixels_per_tangent) == 0);
     cell.certainty[e] = one_point ? HUGE_VAL : 0;
@@ -94,9 +94,9 @@ HWY_INLINE Cell<values> set_up(const ProjectedMesh& projected, std::uint32_t tet
   return cell;
 }
 
-/// |E| of a perspective edge that the ray meets, after an infinitesimal shift of the ray: its rate of change. A ray
-/// that meets a face whose plane contains the eye runs along this plane, where all three E are zero; these rates are
-/// then its weights, and give the eye's depth.
+/// Returns |E| of a perspective edge that the ray meets, after an infinitesimal shift of the ray: the rate of change of
+/// E. A ray that meets a face whose plane contains the eye runs along this plane, where all three E are zero. These
+/// rates are then its weights, and the resulting depth is that of the eye.
 double magnitude_beside(const PixelVertex& from, const PixelVertex& to, double pixels_per_tangent) {
   const LineOfSight a = line_of_sight(from, pixels_per_tangent), b = line_of_sight(to, pixels_per_tangent);
   const double by_x = a.y * b.w - a.w * b.y, by_y = a.w * b.x - a.x * b.w;
@@ -117,8 +117,8 @@ HWY_NOINLINE void settle_signs(const Cell<values>& cell, const double* px, const
       const PixelVertex &from = cell.corner[edge_from[e]], &to = cell.corner[edge_to[e]];
       const int sign = edge_sign(from, to, px[lane], py[lane], cell.pixels_per_tangent, &on_edge);
       ++counts.exact_sign_tests;
-      // Within the bound, the magnitude is noise: any magnitude this small is equally valid. Keep it, with the exact
-      // sign.
+      // Within the error bound, the magnitude is noise: any magnitude this small is equally valid. It is kept, with the
+      // exact sign.
       const double magnitude = on_edge && cell.pixels_per_tangent != 0
                                    ? magnitude_beside(from, to, cell.pixels_per_tangent)
                                    : std::max(std::abs(value), cell.error_bound * 0x1p-20);
@@ -128,8 +128,8 @@ HWY_NOINLINE void settle_signs(const Cell<values>& cell, const double* px, const
 }
 
 /// The position of an eye that is exactly on a vertex or an edge of the cell: value[from] + (value[to] - value[from]) *
-/// part. The ends of the edge are on one line through the eye, the origin of homogeneous space, on either side of it,
-/// so all their coordinates have the same ratio; the largest coordinate gives it most accurately.
+/// part. The ends of the edge are on one line through the eye, which is the origin of homogeneous space, on either side
+/// of the eye. So all their coordinates have the same ratio; the largest coordinate gives this ratio most accurately.
 struct EyeOnEdge {
   int from = 0, to = 0;
   double part = 0;
@@ -155,7 +155,7 @@ struct Pixels {
 
 /// The values that are the same for all pixels of a cell, kept in registers as far as possible.
 struct CellLanes {
-  VD width, inverse_width, left, top, count;  ///< of the box
+  VD width, inverse_width, left, top, count;  ///< size, position and number of pixels of the box
   VD near_depth, far_depth, tile_left, tile_top, tile_width, bound;
   hn::Vec<hn::RebindToUnsigned<DD>> tet;
 
@@ -177,7 +177,7 @@ struct CellLanes {
     tet = Set(hn::RebindToUnsigned<DD>(), static_cast<std::uint64_t>(number) << 32);
   }
 
-  /// Candidates base, base + 1... of the box, row by row.
+  /// Returns the candidates base, base + 1... of the box, row by row.
   HWY_INLINE Pixels pixels_from(int base) const {
     const DD d;
     const VD k = Iota(d, base);
@@ -186,7 +186,7 @@ struct CellLanes {
   }
 };
 
-/// The six edge functions at these pixels, with the exact signs.
+/// Returns the six edge functions at these pixels, with the exact signs.
 template <int values>
 HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes, const Pixels& pixels, VD (&edge)[6],
                                RasterCounts& counts) {
@@ -214,7 +214,7 @@ HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes,
   }
 }
 
-/// Numerators and denominators at the pierced face of one orientation, collected face by face.
+/// Numerators and denominators of depth and values at the pierced face of one orientation, collected face by face.
 template <int values>
 struct Crossed {
   VD depth_sum, value_sum[values], weight, depth_c, value_c[values];
@@ -239,7 +239,7 @@ struct Crossed {
   }
 };
 
-/// a * (at_a - at_c) + b * (at_b - at_c).
+/// Returns a * (at_a - at_c) + b * (at_b - at_c).
 HWY_INLINE VD weighted(VD a, VD b, double at_a, double at_b, double at_c) {
   return MulAdd(a, Set(DD(), at_a - at_c), b * Set(DD(), at_b - at_c));
 }
@@ -264,8 +264,8 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const VD (&edge)[6], Cross
     const auto counter = And(And(negative[face.bc], positive[face.ac]), negative[face.ab]);
     const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
     Crossed<values> here;
-    // Relative to corner c, so that a face with a single value or depth keeps it bit for bit: a transfer function may
-    // step there.
+    // Values are relative to corner c, so that a face with a single value or depth keeps it bit for bit; a transfer
+    // function may have a step at this value.
     const VD a = weight[face.bc], b = weight[face.ac];
     here.depth_c = Set(d, cell.corner[face.c].depth);
     here.depth_sum = weighted(a, b, cell.corner[face.a].depth, cell.corner[face.b].depth, cell.corner[face.c].depth);
@@ -280,14 +280,14 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const VD (&edge)[6], Cross
   }
 }
 
-/// Segments of the candidate pixels that have one.
+/// The segments of the candidate pixels that have one.
 template <int values>
 struct Segments {
   MD hit;
   VD front, back, value_front[values], value_back[values];
 };
 
-/// From the nearer crossing to the farther one, within the clipping range.
+/// Makes segments from the nearer crossing to the farther one, within the clipping range.
 template <int values>
 HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, MD hit, const Crossed<values>& plus,
                                              const Crossed<values>& minus) {
@@ -355,8 +355,8 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell<values>& cell, st
     edge_functions(cell, lanes, pixels, edge, counts);
     Crossed<values> plus, minus;
     cross_faces(cell, edge, plus, minus);
-    // Only one crossing: the eye is on a vertex or an edge of the cell, whose faces there are edge-on for all rays, and
-    // the ray begins on them.
+    // If there is only one crossing, the eye is on a vertex or an edge of the cell. The faces at this vertex or edge
+    // are edge-on for all rays, and the ray begins on them.
     const auto alone = And(pixels.in_box, Xor(plus.any, minus.any));
     if (HWY_UNLIKELY(!AllFalse(d, alone))) {
       const EyeOnEdge eye = eye_on_edge(cell.corner, cell.pixels_per_tangent);

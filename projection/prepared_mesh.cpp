@@ -83,7 +83,7 @@ std::array<double, 2> PreparedMesh::scalar_bounds(std::size_t tet) const {
   if (mesh_.association == scene::Association::cell) return {mesh_.scalars[tet], mesh_.scalars[tet]};
   const scene::Tet& t = mesh_.tets[tet];
   const double a = mesh_.scalars[t[0]], b = mesh_.scalars[t[1]], c = mesh_.scalars[t[2]], d = mesh_.scalars[t[3]];
-  // std::minmax of a list branches, unpredictably.
+  // This avoids std::minmax of a list, which has unpredictable branches.
   return {std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d))};
 }
 

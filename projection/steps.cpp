@@ -17,9 +17,9 @@ namespace tessera::projection {
 namespace {
 
 static_assert(PreparedMesh::block_tets == 64);  // a word of bits
-/// The most that all crossings of a ray together may change a pixel by.
+/// Upper bound of the change of a pixel that all crossings of a ray together may cause.
 constexpr double tolerance = 5e-6;
-/// The position of a crossing has this error, relative to the segment's length, in float lanes and under perspective.
+/// In float lanes and under perspective, the position of a crossing has this error, relative to the segment's length.
 constexpr double relative_error = 0x1p-22;
 
 constexpr auto value_above = [](double value, const Step& step) { return value < step.value; };
@@ -29,7 +29,7 @@ std::size_t steps_passed(std::span<const Step> steps, double value) {
   return static_cast<std::size_t>(std::upper_bound(steps.begin(), steps.end(), value, value_above) - steps.begin());
 }
 
-/// Decides whether a cell must be cut at steps.
+/// Determines whether a cell must be cut at steps.
 class Rule {
  public:
   Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const scene::Lattice* lattice)
@@ -41,9 +41,9 @@ class Rule {
                                      : 2 * most * double_error;
   }
 
-  /// The largest number of pieces of the cell in a pixel; 0 if the lattice or double precision is accurate enough
-  /// without cutting. `passed`: the number of steps below the previous cell, which is mostly the same for the next cell
-  /// of the file; any number in the first call.
+  /// Returns the largest number of pieces of the cell in a pixel; 0 if the lattice or double precision is accurate
+  /// enough without cutting. `passed` is the number of steps below the previous cell, which is mostly the same for the
+  /// next cell of the file. It may have any value in the first call.
   [[nodiscard]] std::size_t pieces(std::size_t tet, std::size_t& passed) const {
     const auto [low, high] = prepared_.scalar_bounds(tet);
     if (!passed_alone(passed, low - most_error_)) passed = steps_passed(steps_, low - most_error_);
@@ -68,42 +68,43 @@ class Rule {
   }
 
  private:
-  /// Whether the first `count` steps are at or below `value`, and no others.
+  /// Whether exactly the first `count` steps are at or below `value`.
   [[nodiscard]] bool passed_alone(std::size_t count, double value) const {
     return (count == 0 || steps_[count - 1].value <= value) && (count == steps_.size() || steps_[count].value > value);
   }
 
-  /// For a cell with these scalars, including crossings of surfaces.
+  /// Returns the largest number of pieces of a cell with these scalars, including crossings of surfaces.
   [[nodiscard]] std::size_t most_pieces(double low, double high) const {
     return 1 + 2 * (steps_passed(steps_, high) - steps_passed(steps_, low));
   }
 
-  // planes_error: gradients are rounded to a step of the lattice, over 16 pixels in two directions, and so is the
-  // corner itself. float_error: the last place of a float. usual_part: two standard deviations of either are less than
-  // half.
+  // planes_error: gradients, over 16 pixels in two directions, and the corner itself are rounded to a step of the
+  // lattice. float_error: the last place of a float. usual_part: two standard deviations of either error are less than
+  // half of the error.
   static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
 
-  /// If the scalar on a face changes by more than this many errors, an error moves the line where a surface leaves the
-  /// face by less than 1/1024 pixel, in a cell of a hundred pixels.
+  /// If the scalar on a face changes by more than this number of errors, an error moves the line where a surface leaves
+  /// the face by less than 1/1024 pixel, in a cell of a hundred pixels.
   static constexpr double most_slope = 1e5;
 
   static bool level(double low, double high) { return low == high; }
 
-  /// A face with a single scalar keeps it: only the scalar's own rounding can change its side.
+  /// Whether rounding can move a scalar across the step. A face with a single scalar keeps the scalar, so only the
+  /// scalar's own rounding can change its side.
   [[nodiscard]] bool rounded_across(const Step& step, double scalar) const {
     if (lattice_ == nullptr) return false;
     const auto on_lanes = [&](double v) { return static_cast<float>(lattice_->scalar_step(v)); };
     return (scalar >= step.value) != (on_lanes(scalar) >= on_lanes(step.value));
   }
 
-  /// The error of a scalar near the step, on the lattice.
+  /// Returns the error that a scalar near the step has on the lattice.
   [[nodiscard]] double lattice_error(const Step& step) const {
     return planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error;
   }
 
-  /// Whether, on the lattice, a surface almost coincides with one of the cell's faces, or passes through a vertex. All
-  /// cells there must agree on its position, and on whether the ray's crossing is in front of a face or behind it: this
-  /// takes double precision.
+  /// Whether a surface almost coincides with one of the cell's faces on the lattice, or passes through a vertex. All
+  /// cells at this face or vertex must agree on the surface's position, and on whether the ray's crossing is in front
+  /// of a face or behind it; this requires double precision.
   [[nodiscard]] bool passes_corner(const Step& step, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
     const double error = lattice_error(step);
@@ -111,7 +112,7 @@ class Rule {
     for (std::size_t i = 0; i < 4; ++i) s[i] = mesh_.scalars[corners[i]];
     for (const double scalar : s)
       if (std::abs(scalar - step.value) <= error) return true;
-    // A face has all corners but one: its scalars range from the lowest of all four, or to the highest.
+    // A face has all corners but one, so its scalars extend from the lowest of all four, or to the highest.
     const auto order = [&](std::size_t i, std::size_t j) {
       const double low = std::min(s[i], s[j]), high = std::max(s[i], s[j]);
       s[i] = low, s[j] = high;
@@ -143,7 +144,7 @@ class Rule {
   std::span<const Step> steps_;
   double longest_ray_;
   const scene::Lattice* lattice_;
-  double most_error_;  ///< of any scalar near a step
+  double most_error_;  ///< upper bound of the error of any scalar near a step
 };
 
 }  // namespace
@@ -212,8 +213,8 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
 
 namespace {
 
-/// The origin of a cell's scalars: the step nearest to them, or, if a face of the cell is in a surface, this surface,
-/// so that the face's scalars are exactly zero.
+/// Returns the origin of a cell's scalars: the step nearest to them or, if a face of the cell is in a surface, the
+/// value of this surface, so that the face's scalars are exactly zero.
 double origin_of(const ProjectedMesh& projected, std::span<const Step> near, std::size_t tet, double low, double high) {
   for (const Step& step : near) {
     if (!step.surface) continue;
@@ -239,7 +240,7 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
   whole_.size = 0;
   const std::array<double, 2> bounds = projected.mesh->scalar_bounds(entry.tet);
   const double low = bounds[0], high = bounds[1];
-  if (!(low < high) || steps.empty()) {  // a single scalar, which is not rounded
+  if (!(low < high) || steps.empty()) {  // the cell has a single scalar, which is not rounded
     rasterize_planes(projected, {&entry, 1}, rect, whole_, counts);
     return whole_;
   }
@@ -276,7 +277,7 @@ void SplitRasterizer<Segments>::split(std::size_t segment, std::span<const Step>
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double front = whole_.front[segment], back = whole_.back[segment];
   const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
-  // Scalars relative to `origin`, with no step between them.
+  // The scalars are relative to `origin`, and there is no step between them.
   const auto add = [&](double piece_front, double piece_back, double a, double b) {
     std::size_t passed = 0;
     while (passed < steps.size() && steps[passed].value - origin <= std::min(a, b)) ++passed;

@@ -21,16 +21,16 @@ using TriangleCorners = std::array<PixelVertex, 3>;
 /// The largest tolerance of a mark, relative to its depth: matter within it is ignored.
 constexpr double most_tolerance = 1e-9;
 
-/// Planes whose slopes differ by less than this, relative to the terms of a slope, count as one: the rounding of
-/// positions and edge functions is below it.
+/// Planes whose slopes differ by less than this, relative to the terms of a slope, count as one plane: the rounding
+/// errors of positions and edge functions are smaller.
 constexpr double coplanar = 1e-9;
 
 scene::PixelRect box_of(const TriangleCorners& c, const scene::PixelRect& window) {
   return footprint({c[0], c[1], c[2], c[2]}, window);
 }
 
-/// The largest change of an edge function at any pixel of the box by rounding and line_of_sight(). With q = X - px w,
-/// E = q_x r_y - q_y r_x; each q has an error of one last place of its terms, and twice this where products are
+/// Returns the largest change of an edge function, at any pixel of the box, by rounding and line_of_sight(). With q = X
+/// - px w, E = q_x r_y - q_y r_x. Each q has an error of one last place of its terms, and twice this where products are
 /// rounded.
 double edge_error(const TriangleCorners& corners, const scene::PixelRect& box, double pixels_per_tangent) {
   constexpr double u = 0x1p-53;
@@ -47,9 +47,9 @@ double edge_error(const TriangleCorners& corners, const scene::PixelRect& box, d
   return 8 * q * (error + u * q);
 }
 
-/// The largest change of an edge function by the rounding of orthographic pixel positions (PixelSpace), which gives a
-/// plane another depth if it is divided into other triangles: four times half of 2^-32 pixel, along an edge and the
-/// distance to it.
+/// Returns the largest change of an edge function by the rounding of orthographic pixel positions (PixelSpace). This
+/// rounding changes the depth of a plane if the plane is divided into other triangles. The error of a position is four
+/// times half of 2^-32 pixel, along an edge and along the distance to it.
 double position_error(const TriangleCorners& c) {
   const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
   const auto [top, bottom] = std::minmax({c[0].y, c[1].y, c[2].y});
@@ -58,7 +58,7 @@ double position_error(const TriangleCorners& c) {
 
 struct Edge {
   double value;
-  bool met;  ///< the ray meets it
+  bool met;  ///< whether the ray meets the edge
 };
 
 Edge edge_at(const PixelVertex& a, const PixelVertex& b, double x, double y, double error, double pixels_per_tangent) {
@@ -70,7 +70,7 @@ Edge edge_at(const PixelVertex& a, const PixelVertex& b, double x, double y, dou
   return {sign * std::max({std::abs(value), error * 0x1p-20, 1e-290}), met};
 }
 
-/// The change of an edge function from one pixel to the next, in x and in y.
+/// Returns the change of an edge function from one pixel to the next, in x and in y.
 std::array<double, 2> growth(const PixelVertex& a, const PixelVertex& b) {
   return {a.y * b.w - a.w * b.y, a.w * b.x - a.x * b.w};
 }
@@ -147,14 +147,14 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
   const double per_tangent = space_->pixels_per_tangent();
   for (std::size_t i = 0; i < 3; ++i) {
     const PixelVertex &a = c[i], &b = c[(i + 1) % 3];
-    // An edge without sides: both ends are on one line of sight.
+    // An edge has no sides if both ends are on one line of sight.
     if ((a.w == b.w && a.x == b.x && a.y == b.y) ||
         ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5, per_tangent) == 0))
       return;
   }
   const std::array<glm::dvec3, 3> at{mesh.points[index[0]], mesh.points[index[1]], mesh.points[index[2]]};
   const glm::dvec3 normal = unit(glm::cross(unit(at[1] - at[0]), unit(at[2] - at[0])));
-  // For the whole image, so that no bit depends on the rectangle.
+  // The error is computed for the whole image, so that no bit depends on the rectangle.
   const double error = edge_error(c, box_of(c, {0, 0, grid_.image.width, grid_.image.height}), per_tangent);
   const double depth_error = error + (per_tangent == 0 ? position_error(c) : 0);
   const auto [least, most] = std::minmax({c[0].depth, c[1].depth, c[2].depth});
@@ -163,7 +163,7 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
   if (!mesh.values.empty())
     for (std::size_t i = 0; i < 3; ++i) value[i] = mesh.values[index[i]];
   const auto [low, high] = std::minmax({value[0], value[1], value[2]});
-  // For the edges opposite to the corners.
+  // Changes of the edge functions of the edges opposite to the corners.
   const std::array<std::array<double, 2>, 3> growths{growth(c[1], c[2]), growth(c[2], c[0]), growth(c[0], c[1])};
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x) {
@@ -173,7 +173,7 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
       if (!one_side(ab, bc)) continue;
       const Edge ca = edge_at(c[2], c[0], px, py, error, per_tangent);
       if (!one_side(ca, ab)) continue;
-      if (ab.met && bc.met && ca.met) continue;  // in the plane of the triangle, which contains the eye
+      if (ab.met && bc.met && ca.met) continue;  // the ray is in the plane of the triangle, which contains the eye
       const double wa = std::abs(bc.value), wb = std::abs(ca.value), wc = std::abs(ab.value), sum = wa + wb + wc;
       const auto mean = [&](double a, double b, double of_c) {
         return of_c + ((a - of_c) * wa + (b - of_c) * wb) / sum;
@@ -181,11 +181,12 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
       const double depth = std::clamp(mean(c[0].depth, c[1].depth, c[2].depth), least, most);
       const double tolerance =
           std::min(8 * (depth_error / sum * (most - least) + 0x1p-52 * size), most_tolerance * size);
-      // If it is at the eye, only rounding can put it in front of the eye.
+      // If the depth is that of the eye, only rounding can put the mark in front of the eye.
       if (!(depth > space_->near_depth() + (space_->near_depth() > 0 ? 0 : tolerance)) ||
           !(depth < space_->far_depth()))
         continue;
-      // The depth is a mean with the edge functions as weights; its slope is one with their changes as weights.
+      // The depth is a mean with the edge functions as weights; its slope is a mean with the changes of the edge
+      // functions as weights.
       std::array<double, 2> slope{}, slope_error{};
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t axis = 0; axis < 2; ++axis) {

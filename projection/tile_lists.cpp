@@ -17,7 +17,8 @@
 namespace tessera::projection {
 namespace {
 
-/// `depth - origin` as a float that is not greater, including the rounding of the sum `origin + result` in double.
+/// Returns `depth - origin` as a float that is not too large, even after the sum `origin + result` is rounded in
+/// double.
 float depth_behind(double origin, double depth) {
   const double exact = (depth - origin) - 4e-16 * (std::abs(depth) + std::abs(origin));
   const auto nearest = static_cast<float>(std::clamp(exact, -3e38, 3e38));
@@ -47,17 +48,16 @@ bool crosses_eye_plane(const std::array<PixelVertex, 4>& c) {
 
 static_assert(PreparedMesh::block_tets == cull_block_cells);
 
-constexpr std::size_t blocks_a_check = 256;  // between checks for a stop: 16,384 tets, less than a millisecond
-
-/// The number of runs of blocks that are culled and filled separately: a few per thread, so that no thread waits long
-/// for the last one, but few enough that their counters, one per tile each, stay below 32 MiB.
+/// Blocks between two checks for a stop: 16,384 tets, less than a millisecond.
+constexpr std::size_t blocks_a_check = 256;
+/// no thread waits long for the last run, but few enough that their counters, one per tile each, stay below 32 MiB.
 std::size_t run_count(std::size_t blocks, std::size_t tiles) {
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t most = std::max<std::size_t>((std::size_t{8} << 20) / tiles, 1);
   return std::clamp<std::size_t>(std::min(8 * threads, blocks), 1, most);
 }
 
-/// visit(first + i) for every bit i of `bits`.
+/// Calls visit(first + i) for every bit i that is set in `bits`.
 template <class Visit>
 void for_each_of(std::uint64_t bits, std::size_t first, Visit visit) {
   for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
@@ -72,7 +72,7 @@ scene::PixelRect TileGrid::rect(std::size_t tile) const {
           std::min((row + 1) * tile_size, image.height)};
 }
 
-/// For a projected tet.
+/// Calls `visit` for every tile that a projected tet is in.
 template <class Visit>
 void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
   const std::uint32_t place = buffers_->places[tet];
@@ -90,8 +90,8 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
   for (int row = box.y0 / size; row <= (box.y1 - 1) / size; ++row)
     for (int column = box.x0 / size; column <= (box.x1 - 1) / size; ++column) {
       const std::size_t tile = static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
-      // The box of a cell like this is the whole window; its tiles are those that no plane through the eye separates
-      // from it.
+      // The box of this cell is the whole window; the cell's tiles are those that no plane through the eye separates
+      // from the cell.
       if (crossing && footprint(corners, grid_.rect(tile)).empty()) continue;
       visit(tile);
     }
@@ -250,7 +250,7 @@ bool TileLists::cull_exactly(std::size_t tet, const ClearIntervals& clear, CullC
   }
   const scene::PixelRect window{0, 0, grid_.image.width, grid_.image.height}, box = footprint(c, window);
   if (box.empty()) {
-    // Inside the window's range in both directions, but without a pixel centre?
+    // If a corner is inside the window, the cell is in view but covers no pixel centre; otherwise it is out of view.
     const auto inside = [&](const PixelVertex& v) {
       return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
     };
@@ -299,7 +299,7 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
   TileEntry* const entries = buffers_->entries.data();
   const std::size_t tiles = last - first;
   const auto add = [&](std::size_t tet, std::size_t tile) {
-    // Numbers of tiles before the band wrap around to large numbers.
+    // For tiles before the band, the difference wraps around to a large number.
     if (tile - first < tiles)
       entries[next[tile - first]++] = {buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
   };
@@ -319,7 +319,7 @@ std::span<TileEntry> TileLists::tile(std::size_t tile) {
 }
 
 std::size_t TileLists::bytes() const {
-  // A member has its share of a team's memory, and of its own arrays only its share is ever touched.
+  // A member counts its share of a team's memory. Of its own arrays, too, it only ever touches its share.
   const std::size_t members = team_ != nullptr ? static_cast<std::size_t>(team_->size()) : 1;
   return (buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
           buffers_->entries.bytes()) /

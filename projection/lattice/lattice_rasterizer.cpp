@@ -20,14 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Not with Highway's emulated lanes: double precision takes less time.
+/// Highway's emulated lanes are not used, because double precision takes less time.
 bool available() { return HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128; }
 
 #if HWY_TARGET == HWY_SCALAR
 void rasterize(const LatticeView&, const ListedCells&, const MaskedRect&, LatticeScratch&, SegmentStream&,
                RasterCounts&) {}
 #else
-/// The subset of `cells` (one bit each) whose candidate pixels are not all closed.
+/// Returns the subset of `cells` (one bit each) whose candidate pixels are not all closed.
 HWY_INLINE unsigned open_cells(const CellBatch& batch, const MaskedRect& pixels, unsigned cells) {
   const scene::PixelRect rect = pixels.in_square();
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << rect.x0;
@@ -45,7 +45,7 @@ HWY_INLINE unsigned open_cells(const CellBatch& batch, const MaskedRect& pixels,
   return cells;
 }
 
-/// After set-up of a batch: covers the pixels of its regular cells and appends their segments.
+/// Must be called after set-up of a batch. Covers the pixels of the batch's regular cells and appends their segments.
 template <bool perspective, bool per_cell>
 void rasterize_cells(const LatticeView& view, const CellBatch& batch, const MaskedRect& pixels, CoverScratch& scratch,
                      SegmentStream& out, RasterCounts& counts) {
@@ -73,7 +73,7 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Mask
   }
   if (cells == 0) return;
   scratch.blocks.lay(batch, parts, pixels.in_square());
-  // Cells of one shape after those of the other, so that branches are predictable.
+  // Cells of one shape are processed after those of the other, so that branches are predictable.
   const auto cover = [&](unsigned of_shape) HWY_ATTR {
     for (; of_shape != 0; of_shape &= of_shape - 1) {
       const int t = __builtin_ctz(of_shape);

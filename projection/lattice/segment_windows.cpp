@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 std::size_t scatter(const SegmentStream& s, std::size_t, const WindowLists&) { return s.size; }
 #else
-/// Segments are converted to records one vector at a time (a transposition in registers), then stored one by one: one
+/// Converts segments to records one vector at a time (a transposition in registers), then stores them one by one: one
 /// 16-byte load and store each, in a loop without branches that can be mispredicted, except at its end.
 template <bool lit>
 std::size_t scatter_as(const SegmentStream& s, std::size_t from, const WindowLists& to) {
@@ -36,7 +36,7 @@ std::size_t scatter_as(const SegmentStream& s, std::size_t from, const WindowLis
                       d, reinterpret_cast<std::int32_t*>(records));
     const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
     // Prefetches the approximate destinations of segments 3 vectors ahead (48 with AVX-512); their lists may grow until
-    // then. Only for every second one: neighbours in the stream mostly have the same cache line.
+    // then. Only every other segment is prefetched, because neighbours in the stream mostly have the same cache line.
     const std::size_t ahead = i + 4 * lanes < s.size ? i + 4 * lanes : s.size;
     for (std::size_t n = i + 3 * lanes; n < ahead; n += 2) {
       const auto pixel = static_cast<std::size_t>(s.pixel[n]);
@@ -86,7 +86,7 @@ void SegmentWindows::grow() {
 
 void SegmentWindows::fit() {
   const std::size_t elements = capacity_ * stride() + pixel_padding;
-  // Lanes read unused elements of lists, so these have to be numbers.
+  // Lanes read unused elements of lists, so these elements must be valid numbers.
   const auto fit = [&](auto& array) {
     const std::size_t before = array.size();
     if (before >= elements) return;

@@ -17,7 +17,7 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The paper's four SSE lanes, also on wider machines; fewer only on machines without four.
+// Four lanes as in the paper, also on processors with longer vectors; fewer only on processors without four lanes.
 using DF4 = hn::CappedTag<float, 4>;
 using DI4 = hn::CappedTag<std::int32_t, 4>;
 using VF4 = hn::Vec<DF4>;
@@ -26,22 +26,22 @@ constexpr std::size_t most_lanes = MaxLanes(DF4());
 
 HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(DF4())); }
 
-constexpr std::int32_t taken = 0;  ///< owner of a fragment that has been paired, or was never written
+constexpr std::int32_t taken = 0;  ///< owner of a fragment that has been paired, or that was never written
 
-/// A projected vertex: pixel position, eye depth, scalar; and the first row of the cell's box with a centre not above
-/// it.
+/// A projected vertex: pixel position, eye depth, scalar, and the first row of the cell's box whose centre is not above
+/// the vertex.
 struct Vertex {
   float x, y, z, s;
   int row;  ///< counted from the top of the rectangle
 };
 
 /// Plain pointers to the arrays of ScanlineBuffers and RaySegments, for one rectangle of pixels. A SIMD store may alias
-/// anything, so with vectors every store would make the next one reload its pointer.
+/// any memory, so with std::vector every store would make the next one reload its pointer.
 struct EdgeArrays {
   float *x, *z, *s;
 };
 struct Arrays {
-  int x0, y0, width;  ///< of the rectangle
+  int x0, y0, width;  ///< position and width of the rectangle
   EdgeArrays left, right;
   std::int32_t *first, *last;
   float* inverse_width;
@@ -55,23 +55,23 @@ struct Arrays {
 
 /// The properties of a cell that its fragments use.
 struct Cell {
-  scene::PixelRect box;  ///< the pixels it may cover, inside the rectangle
+  scene::PixelRect box;  ///< the pixels inside the rectangle that the cell may cover
   float nearest;         ///< depth of its nearest vertex
   float near_clip, far_clip;
-  bool clipped;  ///< reaches beyond one of these
+  bool clipped;  ///< whether the cell extends beyond one of these
   float longest_edge;
   std::uint32_t tet;
-  std::int32_t owner;  ///< the cell's mark in B
+  std::int32_t owner;  ///< the cell's number as an owner in B
 };
 
-/// The first row (or pixel) of [low, high] whose centre is not before `position`.
+/// Returns the first row (or pixel) of [low, high] whose centre is not before `position`.
 HWY_INLINE int first_centre(float position, int low, int high) {
   return static_cast<int>(std::clamp(std::ceil(position - 0.5f), static_cast<float>(low), static_cast<float>(high)));
 }
 
-/// Intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at a time; row
-/// 0 is the image's row y0. The arrays have four elements more than the rectangle has rows: the last step may write
-/// past the edge's end, where the next edge overwrites it or nothing is read.
+/// Computes the intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at
+/// a time; row 0 is the image's row y0. The arrays have four elements more than the rectangle has rows, because the
+/// last step may write past the edge's end, where the next edge overwrites the values or they are not read.
 HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int y0, const EdgeArrays& side) {
   if (start.row >= end.row) return;
   const DF4 f;
@@ -105,7 +105,7 @@ HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, con
   }
 }
 
-/// Up to four segments, between lanes and RaySegments.
+/// Up to four segments, on their way from lanes to RaySegments.
 struct Lanes {
   alignas(16) float z_back[4], length[4], s_front[4], s_back[4];
 };
@@ -128,7 +128,7 @@ struct Crossings {
   VF4 z_back, z_front, s_front, s_back;
 };
 
-/// Stores lanes one by one: for when some have no partner in B, or the clipping range cuts.
+/// Stores lanes one by one; used when some lanes have no partner in B, or when the clipping range cuts.
 HWY_NOINLINE void store_some(const Crossings& crossings, MF4 paired, std::uint64_t pixel_and_tet, const Cell& cell,
                              Arrays& to) {
   const DF4 f;
@@ -229,7 +229,8 @@ HWY_INLINE void rasterize_face(const Triangle& face, Side side, const Cell& cell
     fill_rows<Side::front>(min->row, max->row, cell, to);
 }
 
-// Faces by their corners. `outward` as in `planes`: seen from outside, (a, b, c) has the orientation of (0, 1, 2).
+// Faces by their corners. `outward` as in `planes`: whether (a, b, c) has the orientation of (0, 1, 2), seen from
+// outside.
 struct Face {
   int a, b, c;
   bool outward;
@@ -237,8 +238,8 @@ struct Face {
 constexpr Face faces[4] = {{0, 1, 2, true}, {0, 1, 3, false}, {0, 2, 3, true}, {1, 2, 3, false}};
 
 void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell, Arrays& to) {
-  // Six times the signed volume, which determines the orientation of the cell's faces. In double precision, because a
-  // thin cell's would be noise in float.
+  // Six times the signed volume, which determines the orientation of the cell's faces. It is computed in double
+  // precision, because in float the volume of a thin cell would be noise.
   const auto across = [&](int i) { return corners[i].x - corners[0].x; };
   const auto down = [&](int i) { return corners[i].y - corners[0].y; };
   const auto deep = [&](int i) { return corners[i].depth - corners[0].depth; };
@@ -250,10 +251,10 @@ void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)
   bool front[4];
   for (int k = 0; k < 4; ++k) {
     const Vertex &a = v[faces[k].a], &b = v[faces[k].b], &c = v[faces[k].c];
-    // From the rounded vertices, that is, for the triangle that is drawn.
+    // Areas are computed from the rounded vertices, that is, for the triangle that is drawn.
     area[k] = (static_cast<double>(b.x) - a.x) * (static_cast<double>(c.y) - a.y) -
               (static_cast<double>(b.y) - a.y) * (static_cast<double>(c.x) - a.x);
-    // A front face if increasing depth leads from the face to the cell's fourth corner.
+    // A face is a front face if depth increases from the face to the cell's fourth corner.
     front[k] = ((area[k] > 0) == (volume > 0)) == faces[k].outward;
   }
   for (const Side side : {Side::back, Side::front})
@@ -294,7 +295,8 @@ std::size_t rasterize(const ScanlineView& view, std::span<const TileEntry> entri
     const std::array<PixelVertex, 4> corners{projected.vertices[t[0]], projected.vertices[t[1]],
                                              projected.vertices[t[2]], projected.vertices[t[3]]};
     Cell cell;
-    // The box of the exact vertices, so that the pixels of a cell do not depend on the tiles for which it was listed.
+    // The box of the exact vertices is used, so that the pixels of a cell do not depend on the tiles for which it was
+    // listed.
     cell.box = footprint(corners, rect);
     if (cell.box.empty()) continue;
     Vertex v[4];
@@ -347,7 +349,7 @@ std::size_t rasterize_scanline(const ScanlineView& view, std::span<const TileEnt
                                RasterCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(rect.area()) + padding,
                     rows = static_cast<std::size_t>(rect.height()) + padding;
-  // The buffers only grow: the owner of a new element is 0, `taken`, and those of the others are stale.
+  // The buffers only grow. The owner of a new element is 0, which is `taken`; the owners of old elements are stale.
   if (buffers.z.size() < pixels) {
     buffers.z.resize(pixels);
     buffers.s.resize(pixels);
