@@ -8,7 +8,8 @@
 namespace tessera::sorting {
 namespace {
 
-/// For up to this many elements, insertion sort beats std::sort: lists from depth-ordered cells are nearly sorted.
+/// Up to this number of elements, insertion sort is faster than std::sort, because lists from cells in depth order are
+/// nearly sorted.
 constexpr std::ptrdiff_t insertion_limit = 48;
 
 }  // namespace
@@ -20,7 +21,7 @@ void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count,
   for (std::size_t i = 0; i < s.size; ++i) ++begin_[s.pixel(i) + 1];
   for (std::size_t p = 0; p < pixel_count; ++p) begin_[p + 1] += begin_[p];
   for (std::size_t i = 0; i < s.size; ++i) entries_[begin_[s.pixel(i)]++] = {depth[i], static_cast<std::uint32_t>(i)};
-  // begin_[p] is now the end of p's list: shift by one.
+  // begin_[p] is now the end of p's list; shifting all values by one makes it the beginning.
   for (std::size_t p = pixel_count; p > 0; --p) begin_[p] = begin_[p - 1];
   begin_[0] = 0;
 
@@ -31,7 +32,7 @@ void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count,
       const projection::Crossing at_a = projection::crossing_of(s.scalar_front[a.segment]);
       const projection::Crossing at_b = projection::crossing_of(s.scalar_front[b.segment]);
       if (at_a.number != at_b.number) return at_a.number < at_b.number;
-      // Triangles have no tet: compare all that a crossing contains.
+      // Triangles have no tet, so crossings are compared by all that they contain.
       if (at_a.cosine != at_b.cosine) return at_a.cosine < at_b.cosine;
       if (s.scalar_back[a.segment] != s.scalar_back[b.segment])
         return s.scalar_back[a.segment] < s.scalar_back[b.segment];
