@@ -51,8 +51,8 @@ HWY_INLINE V thin_exp(V x) {
   return sum;
 }
 
-/// int_0^1 exp(-q) du by the series 1 - q + q^2/2 - q^3/6 + q^4/24, integrating each power as a polynomial. The omitted
-/// q^5 / 120 is below 3e-9 for an optical depth of 0.05.
+/// Computes int_0^1 exp(-q) du by the series 1 - q + q^2/2 - q^3/6 + q^4/24, integrating each power as a polynomial.
+/// The omitted term q^5 / 120 is below 3e-9 for an optical depth of 0.05.
 HWY_INLINE V thin_zeroth(V a, V b) {
   const D d;
   const auto number = [&](double value) HWY_ATTR { return Set(d, value); };
@@ -66,15 +66,15 @@ HWY_INLINE V thin_zeroth(V a, V b) {
   return MulAdd(q4, number(1.0 / 24), MulAdd(q3, number(-1.0 / 6), MulAdd(q2, number(0.5), number(1.0) - q1)));
 }
 
-/// Upper bound of the number of pieces of a segment: one per interval, plus those from cutting thick pieces. The
-/// transmittance of each of these is at most exp(-1), so few suffice until the rest is negligible.
+/// Upper bound of the number of pieces of a segment: one per interval, and those from cutting thick pieces. The
+/// transmittance of each piece that was cut is at most exp(-1), so few pieces suffice until the rest is negligible.
 template <class Table>
 std::size_t most_pieces(const Table& table) {
   constexpr std::size_t thick = 64;
   return table.base.size() + thick;
 }
 
-/// One column of the table at each lane's interval. `in_register`: the whole column fits in one vector.
+/// Looks up one column of the table at each lane's interval. `in_register`: the whole column fits in one vector.
 template <bool in_register>
 HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
   const D d;
@@ -87,8 +87,8 @@ struct Piece {
   V kappa0, kappa1, length, depth;
 };
 
-/// The fraction of a piece whose optical depth is most_depth, in lanes of `thick`; elsewhere 1. Solves q(u) =
-/// most_depth in the form without cancellation.
+/// Returns the fraction of a piece whose optical depth is most_depth, in lanes of `thick`, and 1 in other lanes. It is
+/// the solution of q(u) = most_depth in the form without cancellation.
 HWY_INLINE V part_of_depth(const Piece& piece, V twice_most_depth, hn::Mask<D> thick) {
   const D d;
   const V one = Set(d, 1.0);
@@ -103,8 +103,8 @@ struct Passage {
   Moments m;
 };
 
-/// `varies`: lanes whose colour varies over the piece. Each lane chooses the thin or thick formula by itself, so that a
-/// segment's bits do not depend on its neighbours in the batch.
+/// `varies` marks lanes whose colour varies over the piece. Each lane chooses the thin or the thick formula by itself,
+/// so that a segment's bits do not depend on its neighbours in the batch.
 HWY_INLINE Passage pass(const Piece& piece, hn::Mask<D> varies, hn::Mask<D> active, bool emits_by_extinction) {
   const D d;
   const auto thin = piece.depth < Set(d, 0.05);
@@ -131,7 +131,7 @@ HWY_INLINE Passage pass(const Piece& piece, hn::Mask<D> varies, hn::Mask<D> acti
   return p;
 }
 
-/// Light of one colour that leaves the front of the piece. For emission by absorption it is
+/// Returns the light of one colour that leaves the front of the piece. For emission by absorption, this is
 ///   c0 (1 - M) + c1 (M - T) = c0 (1 - T) + (c1 - c0) (M - T);
 /// the second term is omitted where the colour is constant.
 HWY_INLINE V light_of(V color0, V color1, V length, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {

@@ -34,7 +34,7 @@ struct Gathered {
   }
 };
 
-/// Adds a part where the function is constant: below the first knot or above the last.
+/// Adds a part of a segment where the function is constant: below the first knot or above the last.
 HWY_INLINE void add_outside(const SegmentTable& table, bool by_extinction, V scalar, V length, Gathered& sum) {
   const D d;
   if (AllFalse(d, length > Zero(d))) return;
@@ -49,7 +49,7 @@ HWY_INLINE void add_outside(const SegmentTable& table, bool by_extinction, V sca
   sum.add(length, kappa, source);
 }
 
-/// Adds the part between the first and the last knot, from the table.
+/// Adds the part of a segment between the first and the last knot, from the table.
 HWY_INLINE void add_inside(const SegmentTable& table, V front, V back, V length, Gathered& sum) {
   const D d;
   const V low = Set(d, table.low), scale = Set(d, table.scale);
@@ -91,8 +91,8 @@ void preintegrated(const SegmentTable& table, scene::Emission emission, SegmentB
     const V front = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_front[i]));
     const V back = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_back[i]));
     const V front_inside = Min(Max(front, low), high), back_inside = Min(Max(back, low), high);
-    // [begin, end] is the part between the first and the last knot, as fractions of the segment. A segment entirely
-    // outside counts as outside in front (begin = 1).
+    // [begin, end] is the part between the first and the last knot, as fractions of the segment. If a segment is
+    // entirely outside, all of it counts as the part in front (begin = 1).
     const auto constant = front == back;
     const V change = IfThenElse(constant, one, back - front);
     const auto below = And(front < low, back < low);

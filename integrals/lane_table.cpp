@@ -30,7 +30,7 @@ bool emits(const scene::Knot& knot, scene::Emission emission) {
          (emission == scene::Emission::independent && std::max({knot.color.x, knot.color.y, knot.color.z}) > 0);
 }
 
-/// The least float that is not below (value - origin) / unit.
+/// Returns the least float that is not below (value - origin) / unit.
 double lane_at_or_above(double value, double origin, double unit) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const double difference = value - origin, back = difference - value;
@@ -87,7 +87,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps, emission);
   knot_count = places.size();
-  // About four cells per knot, so that evenly spaced knots have one cell each.
+  // There are about four cells per knot, so that evenly spaced knots have one cell each.
   std::vector<float> knots;
   knots.reserve(knot_count);
   for (const Place& place : places) knots.push_back(static_cast<float>(place.position));
@@ -105,7 +105,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
     before += n;
   }
   largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
-  // A search that starts at the last knot reads up to its first step beyond it.
+  // A search that starts at the last knot may read past this knot by the length of the first step of a search.
   stride = knot_count + 2 + std::max(padding, largest_step);
   rows.assign(column_count * stride, 0.0f);
   float* const edges = &rows[edge * stride];

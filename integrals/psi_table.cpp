@@ -9,7 +9,8 @@ namespace tessera::integrals {
 
 PsiTable::PsiTable(int table_size)
     : size(table_size), psi(static_cast<std::size_t>(table_size) * static_cast<std::size_t>(table_size), 0.0f) {
-  // With extinction s at scalar s and independent white emission, the light of a segment of length 1 equals Psi.
+  // If the extinction at scalar s is s, and emission is independent and white, the light of a segment of length 1 is
+  // Psi.
   const double last = size - 1;
   const auto depth_of = [&](int i) { return i / (last - i); };
   const PiecewiseTable identity(scene::TransferFunction({{0, {1, 1, 1}, 0}, {last, {1, 1, 1}, last}}));

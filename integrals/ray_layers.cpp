@@ -8,7 +8,7 @@
 namespace tessera::integrals {
 namespace {
 
-constexpr double rounding = 1e-12;  // relative, of a layer's optical depth
+constexpr double rounding = 1e-12;  // relative rounding error of a layer's optical depth
 
 scene::Integrator exact(bool terminates) {
   scene::Integrator integrator;
@@ -65,7 +65,7 @@ void RayLayers::find_cuts(const Stretch& stretch, const OpenLayer& layer) {
         held += rest;
         return true;
       }
-      // Solves length (k d + rise d^2 / 2) = limit - held, in the form without cancellation.
+      // The solution of length (k d + rise d^2 / 2) = limit - held, in the form without cancellation.
       const double k = k0 + rise * x, q = std::max(0.0, limit_ - held) / length;
       const double d = 2 * q / (k + std::sqrt(std::max(0.0, k * k + 2 * rise * q)));
       x = x + d < 1 ? x + d : 1;

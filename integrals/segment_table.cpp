@@ -40,7 +40,7 @@ SegmentTable::SegmentTable(const scene::TransferFunction& function, scene::Emiss
   std::vector<double> mean(n);
   for (std::size_t front = 0; front < n; ++front) {
     batch.size = n;
-    // A thin segment, because the integrator stops where the transmittance is low.
+    // Uses a thin segment, because the integrator stops where the transmittance is low.
     const double length = most > 0 ? thin / most : 1;
     for (std::size_t back = 0; back < n; ++back)
       batch.length[back] = length, batch.scalar_front[back] = scalar(front), batch.scalar_back[back] = scalar(back);
