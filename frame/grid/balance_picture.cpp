@@ -15,7 +15,7 @@ namespace {
 
 using Rgb = glm::dvec3;
 
-/// Linear light; neighbours in the list differ clearly in hue.
+/// Colours in linear light; neighbours in the list differ clearly in hue.
 constexpr std::array<Rgb, 8> process_colors = {Rgb{0.90, 0.10, 0.05}, Rgb{0.05, 0.55, 0.10}, Rgb{0.08, 0.20, 0.95},
                                                Rgb{0.95, 0.70, 0.02}, Rgb{0.60, 0.08, 0.70}, Rgb{0.02, 0.65, 0.70},
                                                Rgb{0.95, 0.35, 0.02}, Rgb{0.45, 0.30, 0.15}};
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> owners_of(const volume::ImageSplit& split, scene::Imag
   return owners;
 }
 
-/// The part of a line, from 0 to 1, that is inside the image; empty if first > second.
+/// Returns the part of a line, from 0 to 1, that is inside the image; the part is empty if first > second.
 std::pair<double, double> inside(const glm::dvec2& a, const glm::dvec2& b, scene::ImageSize size) {
   double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
@@ -67,7 +67,8 @@ std::pair<double, double> inside(const glm::dvec2& a, const glm::dvec2& b, scene
   return {from, to};
 }
 
-/// A grid's boxes as lines over an image. A pixel where many lines cross is no brighter than one with a single line.
+/// Draws a grid's boxes as lines over an image. A pixel where many lines cross is no brighter than one with a single
+/// line.
 class BoxLines {
  public:
   BoxLines(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry)
@@ -117,7 +118,7 @@ class BoxLines {
     const int steps = static_cast<int>(std::ceil(std::max(std::abs(way.x), std::abs(way.y)) * (to - from))) + 1;
     for (int n = 0; n <= steps; ++n) {
       const glm::dvec2 r = p + way * (from + (to - from) * n / steps);
-      // Distributed to the two pixels next to the line.
+      // The line is distributed to the two pixels on either side of it.
       const double across = (flat ? r.y : r.x) - 0.5, part = across - std::floor(across);
       touch(flat ? r.x : r.x - 0.5, flat ? r.y - 0.5 : r.y, 1 - part, color);
       touch(flat ? r.x : r.x + 0.5, flat ? r.y + 0.5 : r.y, part, color);
@@ -143,7 +144,7 @@ void dim(scene::Image& image) {
   for (std::size_t n = 0; n < image.rgba.size(); ++n) image.rgba[n] = n % 4 == 3 ? 1.0f : 0.5f * image.rgba[n];
 }
 
-/// Colour map from 0 to 1: black over blue, red and yellow to white.
+/// Maps 0 to 1 to colours: from black over blue, red and yellow to white.
 Rgb heat_of(double share) {
   constexpr std::array<Rgb, 6> heat = {Rgb{0, 0, 0},          Rgb{0.02, 0.03, 0.35}, Rgb{0.35, 0.02, 0.35},
                                        Rgb{0.85, 0.08, 0.05}, Rgb{0.95, 0.65, 0.05}, Rgb{1, 1, 1}};
@@ -196,7 +197,7 @@ scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, c
   scene::Image image(size);
   dim(image);
   const double most = seconds.empty() ? 0 : *std::ranges::max_element(seconds);
-  // The most expensive last: it covers the lines that it shares with others.
+  // The most expensive part is drawn last, so that it covers the lines that it shares with others.
   std::vector<std::size_t> order(std::min(parts.size(), seconds.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t process) { return seconds[process]; });
@@ -204,7 +205,7 @@ scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, c
     const auto [low, high] = corners_of(parts[process]);
     if (low == high || most <= 0) continue;
     BoxLines lines(camera, size, geometry);
-    constexpr double least = 0.2;  // parts without cost remain visible
+    constexpr double least = 0.2;  // lets parts without cost remain visible
     lines.add(low, high, heat_of(least + (1 - least) * seconds[process] / most));
     lines.paint(image);
   }

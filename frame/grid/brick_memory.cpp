@@ -23,7 +23,7 @@ std::uint64_t resident_bytes() {
 namespace {
 
 /// Bytes of the samples that a thread lays out for a tile's rays (volume/bricks/slab_block.hpp), if the volume fills
-/// the image. From farther away a tile covers more of it.
+/// the image. From farther away, a tile covers more of the volume.
 std::uint64_t bytes_of_tile(const scene::GridGeometry& geometry, scene::ImageSize picture) {
   constexpr double pixels = volume::TileRays::side, leaning = 1.5, beside = 10;
   scene::GridIndex samples = geometry.samples();
@@ -37,13 +37,13 @@ std::uint64_t bytes_of_tile(const scene::GridGeometry& geometry, scene::ImageSiz
 
 std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
                               const volume::RenderSettings& settings, scene::ImageSize picture) {
-  // Flags of the frame, flags by which sort-last splits, flags of surfaces and a copy.
+  // Bytes per cell: flags of the frame, flags with which sort-last splits the volume, flags of surfaces and a copy.
   std::uint64_t a_cell = 1;
   if (settings.parts > 1) a_cell += 1;
   if (!settings.surfaces.empty()) a_cell += 2;
   const IntegratorKind kind = settings.integrator.kind;
-  if (kind == IntegratorKind::preintegrated) a_cell += 2 * sizeof(float);  // ranges within reach of a step
-  // Casting rays again and walking to surfaces each need blocks of samples per thread.
+  if (kind == IntegratorKind::preintegrated) a_cell += 2 * sizeof(float);  // ranges of values within reach of a step
+  // Casting rays again and finding surfaces each need blocks of samples in every thread.
   const std::uint64_t walks = (volume::in_steps(kind) ? 0 : 1) + (settings.surfaces.empty() ? 0 : 1);
   const std::uint64_t a_thread = walks * volume::SampleBlocks::most_bytes(geometry) + bytes_of_tile(geometry, picture);
   const auto threads = static_cast<std::uint64_t>(scene::threads_for(settings.threads));

@@ -36,7 +36,7 @@ class PixelSamples {
   virtual void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) = 0;
 };
 
-/// Samples that are layers.
+/// Renders pixels whose samples are layers.
 class LayerPixels final : public PixelSamples {
  public:
   LayerPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
@@ -55,7 +55,7 @@ class LayerPixels final : public PixelSamples {
   std::vector<integrals::RayLayer> layers_;
 };
 
-/// Samples that may be cut.
+/// Renders pixels whose samples may be cut.
 class DeepPixels final : public PixelSamples, public volume::WalkSink {
  public:
   DeepPixels(const scene::SampleSource& source, const scene::TransferFunction& function, const DeepSettings& settings)
@@ -111,13 +111,13 @@ class DeepPixels final : public PixelSamples, public volume::WalkSink {
   [[nodiscard]] double transmittance() const override { return transmittance_; }
 
  private:
-  /// A surface between the pieces.
+  /// A surface and its position among the pieces.
   struct Met {
     std::size_t piece;
     scene::SurfaceSet::Light light;
   };
 
-  /// Computes the pieces, with the index of each surface among them.
+  /// Computes the pieces along a ray, and for each surface its index among them.
   void go_along(const volume::VoxelRay& ray) {
     crossings_.clear();
     met_.clear();

@@ -14,12 +14,12 @@ namespace {
 
 using exchange::Bytes;
 
-/// First row of a rank's band.
+/// Returns the first row of a rank's band.
 int first_row(int rank, int ranks, int height) {
   return static_cast<int>(static_cast<std::int64_t>(height) * rank / ranks);
 }
 
-/// The numbers of samples of the band's pixels, and the samples.
+/// Packs the numbers of samples of the band's pixels, and the samples.
 Bytes packed(const scene::DeepImage& image, int y0, int y1) {
   const auto width = static_cast<std::size_t>(image.size.width);
   const std::size_t first = static_cast<std::size_t>(y0) * width, last = static_cast<std::size_t>(y1) * width;
@@ -53,7 +53,7 @@ std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const 
                                           const scene::Camera& camera, scene::ImageSize size,
                                           const scene::TransferFunction& function, const DeepSettings& settings,
                                           std::int32_t number, const std::stop_token& stop) {
-  // Rank 0 could mistake bands for tiles of the flat image while it still assembles that.
+  // Without this barrier, rank 0 could mistake bands for tiles of the flat image while it still assembles that image.
   exchange::barrier(transport);
   const int rank = transport.rank(), ranks = transport.size();
   const auto row = [&](int r) { return first_row(r, ranks, size.height); };
@@ -64,7 +64,7 @@ std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const 
   } catch (const scene::FrameStopped&) {
     stopped = true;
   }
-  // A rank that finished before the stop also throws, like the others.
+  // A rank that finished before the stop throws, too, like the others.
   if (ranks > 1) stopped = reduce_all(transport, {stopped ? 1u : 0u}, Reduction::sum)[0] > 0;
   if (stopped) throw scene::FrameStopped();
   if (ranks == 1) return own;

@@ -14,7 +14,7 @@ namespace {
 using exchange::MessageReader;
 using scene::PixelRect;
 
-/// A rectangle in strips of a few rows, which limits what is packed at once.
+/// Divides a rectangle into strips of a few rows, which limits how many pixels are packed at once.
 std::vector<PixelRect> strips_of(const PixelRect& rect) {
   constexpr int rows = 64;
   std::vector<PixelRect> strips;

@@ -26,11 +26,11 @@ static_assert(sizeof(ScanTotals) == 24);
 
 constexpr std::uint64_t cells_a_message = 1 << 24;  // 128 MiB; a message may have 1 GiB
 
-/// A message with `count` cells of a rank's share.
+/// Makes a message with `count` cells of a rank's share.
 Bytes cells_of(const volume::CellScan& scan, std::uint64_t first_of_scan, std::uint64_t first, std::uint64_t count) {
   Bytes bytes =
       exchange::begin_message(MessageKind::cell_ranges, 2 * sizeof(std::uint64_t) + 2 * count * sizeof(float));
-  append(bytes, first_of_scan + first);  // numbered as in CellRanges
+  append(bytes, first_of_scan + first);  // cells are numbered as in CellRanges
   append(bytes, count);
   append_values(bytes, std::span(scan.low).subspan(first, count));
   append_values(bytes, std::span(scan.high).subspan(first, count));
@@ -57,8 +57,8 @@ volume::CellRanges scan_together(exchange::Transport& transport, const scene::Sa
   volume::CellScan own = volume::scan_cells(source, first_layer(self), first_layer(self + 1));
   if (ranks == 1) return {source.grid(), std::move(own)};
 
-  // Sent from each rank to each: through rank 0, like small messages, its memory would hold all ranks' copies of all
-  // cells.
+  // Each rank sends its cells to each other rank. If they passed through rank 0, like small messages, its memory would
+  // have to hold all ranks' copies of all cells.
   const std::uint64_t before = static_cast<std::uint64_t>(cells[0] * cells[1] * own.first), count = own.low.size();
   for (std::uint64_t at = 0; at < count; at += cells_a_message) {
     const Bytes bytes = cells_of(own, before, at, std::min(cells_a_message, count - at));
@@ -72,7 +72,7 @@ volume::CellRanges scan_together(exchange::Transport& transport, const scene::Sa
   std::copy(own.high.begin(), own.high.end(), whole.high.begin() + static_cast<std::ptrdiff_t>(before));
   for (std::uint64_t there = count; there < whole.low.size();) there += place(transport.receive(Channel::mesh), whole);
 
-  // This also ends the exchange: no rank begins the next one while another still waits for cells of this one.
+  // This also ends the exchange: no rank begins the next exchange while another still waits for cells of this one.
   const ScanTotals totals{own.lowest, own.highest, own.blanks};
   for (const ScanTotals& part : exchange::gather_values(transport, MessageKind::cell_totals, totals)) {
     whole.lowest = std::min(whole.lowest, part.lowest);

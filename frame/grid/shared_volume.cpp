@@ -25,7 +25,7 @@ using exchange::Bytes;
 using exchange::MessageKind;
 using exchange::MessageReader;
 
-/// For each rank the lowest rank of its machine; a rank on an unknown machine is its own.
+/// Returns, for each rank, the lowest rank of its machine. A rank on an unknown machine is its own leader.
 std::vector<std::size_t> leaders(exchange::Transport& transport) {
   Bytes own = exchange::begin_message(MessageKind::host);
   append_text(own, exchange::machine());
@@ -40,7 +40,7 @@ std::vector<std::size_t> leaders(exchange::Transport& transport) {
   return leaders;
 }
 
-/// Where a leader has written the samples; an empty path: they are in the file itself.
+/// Where a leader has written the samples. An empty path states that they are in the file itself.
 struct Place {
   std::string path, folder;
   std::uint64_t bytes = 0;
@@ -78,7 +78,7 @@ Place place_in(MessageReader& reader) {
   return place;
 }
 
-/// Reads everything except the samples.
+/// Reads the whole description, but not the samples.
 io::VolumeFile description_in(MessageReader& reader) {
   io::VolumeFile volume;
   volume.fields = take_fields(reader);

@@ -132,14 +132,14 @@ class SortFirst::State {
  private:
   [[nodiscard]] bool weights_are_given() const { return !settings_.balance_weights.empty(); }
 
-  /// Whether tiles are timed and splits computed from the times. Not with weights, which distribute work rather than
-  /// time, nor with a cost map to show, which must be the same in each run.
+  /// Whether tiles are timed and splits are computed from the times. This is not done with weights, which distribute
+  /// work rather than time, nor with a cost map to show, which must be the same in each run.
   [[nodiscard]] bool uses_times() const {
     return settings_.balance == Balance::learned && transport_.size() > 1 && !weights_are_given() && !frame_.keep_cost;
   }
 
-  /// The split that rank 0 finds from earlier frames. If there is none, rank 0 may still set the weights of the ranks
-  /// for another split. Collective.
+  /// Returns the split that rank 0 computes from earlier frames. If there is none, rank 0 may still set the ranks'
+  /// weights for another split. Collective.
   std::optional<ImageSplit> known_split(const volume::Renderer& renderer, const scene::TransferFunction& function,
                                         const VolumeJob& job) {
     if (!uses_times()) return std::nullopt;
@@ -242,8 +242,9 @@ class SortFirst::State {
   }
 
   /// Learns the work in the volume's cells from a pilot pass: each rank casts every 128th ray of its rectangle in the
-  /// last frame, whose bricks it holds. Four times as many rays cost more than they gain. A cell's work changes little
-  /// between views: a frame whose view is near the last one casts other rays, and learns from both. Collective.
+  /// last frame, whose bricks it has in memory. Four times as many rays cost more than they gain. A cell's work changes
+  /// little between views, so a frame whose view is close to the last view casts other rays, and learns from the rays
+  /// of both frames. Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !frame_.keep_cost) || settings_.balance != Balance::learned) return;
@@ -307,7 +308,7 @@ class SortFirst::State {
   void share_times(double cpu) { times_ = exchange::gather_values(transport_, MessageKind::seconds, cpu); }
 
   /// Sets the weights by each rank's CPU time per thread in the last frame: a rank that took longer than the mean gets
-  /// less of the next frame. Applies only half of the correction, since costs are estimates. Collective.
+  /// less of the next frame. Applies only half of the correction, because costs are estimates. Collective.
   void learn_speed(double cpu_seconds, bool stopped) {
     const double own = stopped ? 0 : cpu_seconds / scene::threads_for(threads_);
     const std::vector<double> seconds = exchange::gather_values(transport_, MessageKind::seconds, own);
@@ -318,7 +319,7 @@ class SortFirst::State {
     for (std::size_t rank = 0; rank < seconds.size(); ++rank) weights_[rank] *= std::sqrt(mean / seconds[rank]);
   }
 
-  /// The times of the last frame, each spread evenly over its rectangle.
+  /// Returns the times of the last frame; each time is spread evenly over its rectangle.
   [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
     CostMap map;
     map.resolution = settings_.balance_resolution;
@@ -345,13 +346,13 @@ class SortFirst::State {
   std::vector<double> weights_, times_;
   std::optional<volume::WorkTally> tally_;
   std::vector<std::uint64_t> learned_;         ///< tallies of all ranks since the last large change of view
-  std::size_t pilots_ = 0;                     ///< number of passes since then
+  std::size_t pilots_ = 0;                     ///< number of pilot passes since then
   std::vector<tessera::Knot> learned_knots_;   ///< of the last frame
   std::optional<scene::Camera> learned_view_;  ///< of the last frame
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
-  SplitByTimes by_times_;                   ///< rank 0
+  SplitByTimes by_times_;                   ///< only on rank 0
   std::optional<VolumeJob> timed_;          ///< the last frame, until its times reach rank 0
   CastTimes times_here_;                    ///< the times of that frame on this rank
   std::vector<tessera::Knot> timed_knots_;  ///< of the last frame

@@ -17,8 +17,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using scene::PixelRect;
 
-/// A rank's band of the footprint, extended by the pixels outside the footprint: the regions of all ranks cover the
-/// image.
+/// Returns a rank's band of the footprint, extended by pixels outside the footprint, so that the regions of all ranks
+/// cover the image.
 PixelRect region_of(const PixelRect& area, int number, int ranks, scene::ImageSize size) {
   const PixelRect band = exchange::band_of(area, number, ranks);
   return {0, number == 0 ? 0 : band.y0, size.width, number == ranks - 1 ? size.height : band.y1};
@@ -29,7 +29,7 @@ std::vector<PixelRect> footprints(const volume::ObjectSplit& split, const Volume
                                   const scene::GridGeometry& geometry, const PixelRect& area) {
   std::vector<PixelRect> own;
   for (const volume::VoxelBox& part : split.boxes()) {
-    // Rounding may put a part's corner outside the footprint of the whole.
+    // By rounding, a part's corner may be outside the footprint of the whole volume.
     if (part.low != part.high)
       own.push_back(scene::common(area, volume::footprint(job.camera, job.size, geometry, part)));
     else
@@ -96,7 +96,7 @@ class SortLast::State {
     bool stopped = false;
   };
 
-  /// Every rank finds the same boxes, since all know the range of every cell of the volume.
+  /// Every rank computes the same boxes, because all ranks have the range of every cell of the volume.
   void divide(const volume::Renderer& renderer, const scene::TransferFunction& function) {
     if (split_ && std::ranges::equal(function.knots(), knots_)) return;
     const scene::TraceScope timing(trace_, "partition");
@@ -107,7 +107,7 @@ class SortLast::State {
   Picture cast(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                const volume::VoxelBox& part, const PixelRect& region, const scene::FrameWatch& watch) const {
     Picture mine;
-    // Pixels that lack other parts are not reported.
+    // Pixels that lack other parts must not be reported.
     scene::FrameWatch quiet(watch.stop());
     const double cpu_before = process_cpu_seconds();
     try {

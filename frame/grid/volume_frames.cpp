@@ -19,7 +19,7 @@ namespace tessera::frame {
 
 using exchange::MessageKind;
 
-/// The frames of one call of render(): gathered and passed on by rank 0, sent there by other ranks.
+/// The frames of one call of render(). Rank 0 gathers them and passes them on; other ranks send their parts to rank 0.
 class VolumeFrames::List {
  public:
   List(exchange::Transport& transport, scene::Trace* trace, StopRelay::Run& relayed, const VolumeCallbacks& callbacks,
@@ -42,7 +42,8 @@ class VolumeFrames::List {
     });
   }
 
-  /// On rank 0: waits until fewer than `in_flight` frames are in progress. Throws what ended the gathering.
+  /// On rank 0: waits until fewer than `in_flight` frames are in progress. Throws the exception that ended the
+  /// gathering.
   void wait_for_room(int in_flight) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failed_ || given_ - left_ < static_cast<std::size_t>(in_flight); });
@@ -61,7 +62,8 @@ class VolumeFrames::List {
     if (!thread_.joinable()) complete_next();
   }
 
-  /// On rank 0: waits for the last frame and returns how many are complete. Throws what ended the gathering.
+  /// On rank 0: waits for the last frame and returns how many are complete. Throws the exception that ended the
+  /// gathering.
   std::size_t end() {
     close();
     if (thread_.joinable()) thread_.join();
@@ -92,7 +94,8 @@ class VolumeFrames::List {
     changed_.notify_all();
   }
 
-  /// Waits for the next frame's own part, then for the others'. False if there is none.
+  /// Waits for this rank's part of the next frame, then for the other ranks' parts. Returns false if there is no next
+  /// frame.
   bool complete_next() {
     VolumePart part;
     {
@@ -124,7 +127,7 @@ class VolumeFrames::List {
     if (call([&] { callbacks_.frame(std::move(finished)); }) && whole) ++complete_;
   }
 
-  /// False if this call or an earlier one threw.
+  /// Returns false if this call or an earlier one threw.
   template <class Call>
   bool call(const Call& call) {
     const std::lock_guard lock(calls_);
@@ -145,7 +148,7 @@ class VolumeFrames::List {
   RegionGather gather_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();  ///< when the last frame was complete
   std::size_t complete_ = 0;
-  bool ended_ = false;  ///< by a stopped frame
+  bool ended_ = false;  ///< a stopped frame has ended the list
 
   std::mutex calls_;
   std::exception_ptr thrown_;
@@ -165,7 +168,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
   const bool alone = transport_.size() == 1, assembles = transport_.rank() == 0;
   StopRelay::Run relayed(relay_, stop);
   {
-    // A frame's time does not include reading.
+    // The time of a frame does not include reading.
     const scene::TraceScope timing(trace_, "wait", static_cast<std::int32_t>(first));
     exchange::barrier(transport_);
   }
@@ -195,7 +198,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
     if (!alone)
       complete = exchange::broadcast_value(transport_, 0, MessageKind::frames_complete, std::uint64_t{complete});
   } catch (const std::exception& fault) {
-    // The other ranks wait for this one, and so does the gathering thread.
+    // The other ranks wait for this rank, and so does the gathering thread.
     if (!alone) transport_.fail(run_error(transport_, fault));
     throw;
   }

@@ -17,7 +17,7 @@
 namespace tessera::frame {
 namespace {
 
-/// Calls `use` with the numbers in their stored type.
+/// Calls `use` with the numbers in the type in which they are stored.
 template <class Use>
 auto with_numbers(const ArrayView& view, const Use& use) {
   return scene::with_number_type(view.type(), [&](auto zero) { return use(view.as<decltype(zero)>()); });
@@ -29,7 +29,7 @@ std::vector<double> doubles_of(const ArrayView& view) {
   return with_numbers(view, [](const auto& numbers) { return std::vector<double>(numbers.begin(), numbers.end()); });
 }
 
-/// Integers in [least, end), or an error that names the first that is outside.
+/// Converts integers that must be in [least, end). Throws an error that names the first integer outside of this range.
 template <class T>
 std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end, std::int64_t least = 0) {
   if (!is_whole(view.type()))
@@ -79,7 +79,7 @@ void check_shapes(const MeshArrays& a) {
                                        of_points ? "points" : "cells"));
 }
 
-/// The arrays without a copy, if they have the layout that the renderer needs.
+/// Returns the arrays without a copy if they have the layout that the renderer needs.
 std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
   if (a.points.type() != NumberType::float64 || a.scalars.type() != NumberType::float64 ||
       a.tets.type() != NumberType::uint32 || !a.types.empty())

@@ -14,18 +14,18 @@
 namespace tessera::frame {
 namespace {
 
-/// A face in a message: corners by position.
+/// A face in a message, with its corners sorted by position.
 struct OpenFace {
   std::array<glm::dvec3, 3> corners;
   std::array<double, 3> values;
-  std::uint32_t turned;  ///< 1: outward in the order of corners 0, 2, 1
+  std::uint32_t turned;  ///< 1: the face points outward in the order of corners 0, 2, 1
   std::uint32_t rank;
 };
 static_assert(sizeof(OpenFace) == 104);
 
 auto place(const glm::dvec3& p) { return std::tuple(p.x, p.y, p.z); }
 
-/// The number of each point in the order of positions; coincident points have the same number.
+/// Returns the number of each point in the order of positions. Coincident points have the same number.
 std::vector<std::uint32_t> numbers_by_place(const scene::TetMeshView& mesh) {
   std::vector<std::uint32_t> order;
   {
@@ -70,8 +70,8 @@ OpenFace open_face(const scene::TetMeshView& mesh, const std::vector<std::uint32
   return open;
 }
 
-/// The faces that belong to only one tet of this part, in the order of their corners' positions. Faces without area are
-/// left out.
+/// Returns the faces that belong to only one tet of this part, sorted by the positions of their corners. Faces without
+/// area are left out.
 std::vector<OpenFace> open_faces(const scene::TetMeshView& mesh) {
   const std::vector<std::uint32_t> numbers = numbers_by_place(mesh);
   std::vector<TetFace> faces;

@@ -26,7 +26,7 @@ namespace tessera::frame {
 /// The result of culling a frame.
 struct FrameProjector::Culled {
   std::vector<projection::Step> steps;  ///< of the transfer function and surfaces
-  projection::CellsAtSteps at_steps;    ///< whose segments are cut there
+  projection::CellsAtSteps at_steps;    ///< cells whose segments are cut at the steps
   projection::TileLists lists;
   std::optional<projection::FrameFaces> faces;
 };
@@ -59,7 +59,7 @@ void check_scanline(const FrameTask& frame, const projection::ProjectedMesh& pro
         "planes");
 }
 
-/// Optical depth of a ray of length `length` that meets all of the function's scalars equally often.
+/// Returns the optical depth of a ray of this length if it meets all of the function's scalars equally often.
 double usual_optical_depth(const scene::TransferFunction& function, double length) {
   const auto knots = function.knots();
   double sum = 0;
@@ -68,9 +68,9 @@ double usual_optical_depth(const scene::TransferFunction& function, double lengt
   const double span = knots.back().value - knots.front().value;
   return length * (span > 0 ? sum / span : knots.front().extinction);
 }
-constexpr double opaque_depth = 40;  // a ray that ends at a transmittance of 1e-3 sees a sixth of it
+constexpr double opaque_depth = 40;  // a ray that ends at a transmittance of 1e-3 passes a sixth of this depth
 
-/// One thread's part of a frame: tiles, one after the other.
+/// One thread's part of a frame. It renders tiles one after the other.
 class TileWorker {
  public:
   TileWorker() = default;
@@ -114,10 +114,10 @@ class Worker final : public TileWorker {
   TileContext context_;
   TileRenderer<Source> renderer_;
   std::unique_ptr<Sink> sink_;
-  std::unique_ptr<compositor::CellSink> cells_;  ///< null: the CPU rasterizes all
+  std::unique_ptr<compositor::CellSink> cells_;  ///< null: the CPU rasterizes all cells
 };
 
-/// The remaining memory budget for segments, shared by the threads.
+/// Returns the remaining memory budget for segments, which the threads share.
 std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int threads) {
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
@@ -129,7 +129,7 @@ std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int t
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
 
-/// TileSinks::prepare in parallel with other work; the destructor waits for it.
+/// Runs TileSinks::prepare in parallel with other work. The destructor waits for it.
 class SideTask {
  public:
   SideTask(const std::function<void()>& work, scene::Trace* trace, std::int32_t frame) {
@@ -159,13 +159,14 @@ class SideTask {
   bool waited_for_ = false;
 };
 
-/// Which process renders a tile.
+/// The process that renders a tile.
 enum class Owner : std::uint8_t { none, self, another, first_to_come };
 
-/// The owner of each tile. A single process owns the tiles that have cells or triangles. The members of a team get half
-/// of the cells in advance, in equal numbers: a tile goes to the preferred member, unless that is ahead of another by
-/// more than a hundredth of its share, otherwise to the member that has least. The remaining tiles, which come last,
-/// are taken one by one, so that no member waits for a slower one at the end.
+/// Returns the owner of each tile. A single process owns the tiles that have cells or triangles. Half of the cells are
+/// distributed to the members of a team in advance, in equal numbers: a tile goes to the preferred member, unless this
+/// member is ahead of another by more than a hundredth of its share; it then goes to the member that has the fewest
+/// cells. The members take the remaining tiles, which come last, one by one, so that no member waits for a slower one
+/// at the end.
 std::vector<Owner> share_out(const FrameTask& frame, const TeamTask& team, const projection::TileLists& lists,
                              const projection::FrameFaces* faces) {
   std::vector<Owner> owners(frame.grid.count(), Owner::none);
@@ -203,7 +204,7 @@ void announce(const TileSinks& sinks, const std::vector<Owner>& owners) {
   sinks.announce(may_come);
 }
 
-/// The tiles that a team's members take one by one, for the threads of one member.
+/// The tiles that a team's members take one by one, shared by the threads of one member.
 class SharedTiles {
  public:
   SharedTiles(const TeamTask& team, const std::vector<Owner>& owners) : team_(&team) {
@@ -234,7 +235,7 @@ std::uint64_t members_of(const TeamTask& team) {
   return team.team != nullptr ? static_cast<std::uint64_t>(team.team->size()) : 1;
 }
 
-/// Renders tiles [first, last), whose lists are filled.
+/// Renders tiles [first, last), whose lists have been filled.
 void render_tiles(const FrameTask& frame, const scene::Image* image, projection::TileLists& lists,
                   const std::vector<Owner>& owners, SharedTiles& shared, Workers& workers, std::size_t first,
                   std::size_t last, const std::stop_token& stop) {
@@ -258,7 +259,7 @@ void render_tiles(const FrameTask& frame, const scene::Image* image, projection:
       tbb::simple_partitioner());
 }
 
-/// The frame's function, with the brightest colors that light on matter may make.
+/// Returns the frame's function with every color replaced by the brightest color that lighting may make of it.
 scene::TransferFunction brightest(const FrameTask& frame) {
   return frame.light != nullptr ? projection::brightest(frame.light->shading(), *frame.function) : *frame.function;
 }
@@ -397,7 +398,7 @@ void FrameProjector::place_on_lattice(const FrameTask& frame, const TeamTask& te
 
 FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projection::ProjectedMesh& projected,
                                             const TeamTask& team, const std::stop_token& stop) {
-  // Steps cannot break a promise of sampling methods, which make none.
+  // Sampling methods do not guarantee an accuracy, so steps cannot violate it.
   const bool exact =
       settings_.mesh.rasterizer != Rasterizer::scanline &&
       (settings_.integrator.kind == IntegratorKind::exact || settings_.integrator.kind == IntegratorKind::automatic);
@@ -422,7 +423,7 @@ FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projec
 }
 
 /// Calls `render` for one band of tiles after another. The lists of a band take at most a quarter of the remaining
-/// budget; the rest is for segments. Returns the largest number of bytes of lists.
+/// budget; the rest is for segments. Returns the largest number of bytes that the lists of a band took.
 std::uint64_t FrameProjector::render_bands(const FrameTask& frame, const TeamTask& team, projection::TileLists& lists,
                                            std::uint64_t held,
                                            const std::function<void(std::size_t, std::size_t)>& render) const {

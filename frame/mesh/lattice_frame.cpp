@@ -29,18 +29,18 @@ bool lanes_suffice(const scene::Integrator& integrator, double brightest, bool s
              : budget::exact_mesh_on_lattice(brightest, shaded) <= budget::exact_mesh;
 }
 // Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
-// most D int T dt over the ray's path through the piece, times the largest contribution behind it. Transmittance T
-// falls at least like exp(-sigma t), where sigma is the piece's smallest extinction. So with x_i for the integral of
-// piece i, sum x_i <= L and sum sigma_i x_i <= 1: if D_i <= E (1 / L + sigma_i) / 2 for all pieces, their total error
-// is at most E.
+// most D int T dt over the ray's path through the piece, times the largest contribution behind the piece. Transmittance
+// T falls at least like exp(-sigma t), where sigma is the piece's smallest extinction. Let x_i be the integral of piece
+// i. Then sum x_i <= L and sum sigma_i x_i <= 1. If D_i <= E (1 / L + sigma_i) / 2 for all pieces, their total error is
+// at most E.
 double seen_length(double length, double least_extinction) {
   return std::min(length, 2 / (1 / length + least_extinction));
 }
-// Anything deeper is dark: only rays at the foot of a very steep ramp could show more.
+// Deeper mesh is dark: only rays at the foot of a very steep ramp could show more.
 constexpr double most_change_of_depth = 64;
 constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
 
-/// The range of planar depths of the box, in front of the eye and inside the clipping range.
+/// Returns the range of planar depths of the box that is in front of the eye and inside the clipping range.
 std::array<double, 2> depth_range(const projection::PixelSpace& space, const scene::Box& box) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int corner = 0; corner < 8; ++corner) {
@@ -74,8 +74,8 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
 
   Lattice lattice{};
   lattice.depth_origin = near + (far - near) / 2;
-  // The lattice's origin is rounded relative to the eye's distance: thin cells of a mesh that is flat in comparison
-  // only keep their thickness in double precision.
+  // The lattice's origin is rounded relative to the eye's distance. If a mesh is flat in comparison to this distance,
+  // its thin cells keep their thickness only in double precision.
   const double half_depth = (far - near) / 2;
   if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
@@ -104,7 +104,8 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
     // The error of a scalar is 16 steps (gradients over a square) or half of a float's last place.
     const double reached =
         std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
-    // Just below a step it is a whole last place: a value that would round to the step becomes the next float below it.
+    // Just below a step, the error is a whole last place, because a value that would round to the step becomes the next
+    // float below the step.
     const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
     const double scalar_error =
         std::max(16 * lattice.scalar_unit, std::min(reached, reach) * (step_above ? 0x1p-23 : 0x1p-24));

@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t usual_capacity = 32;         // segments per pixel: half a MiB of windows
 constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: fewer segments behind that point
 constexpr std::size_t cells_at_once = 16;
-// When one list is full, lists shorter than this fraction of the first capacity wait: most of what is sorted should be
-// final.
+// When one list is full, lists shorter than this fraction of the first capacity stay in the store: most of the segments
+// that are sorted should be final.
 constexpr double fullness = 0.75;
-// Cells that are oblique to the rays are in front long before their segments are. If more than this fraction of a list
-// is not final, sorting it would be repeated; it gets more capacity instead, as long as that stays in the cache.
+// The nearest depths of cells that are oblique to the rays are far in front of their segments. If more than this
+// fraction of a list is not final, sorting the list would be repeated; the list gets more capacity instead, as long as
+// it stays in the cache.
 constexpr double rest_worth_growing = 0.25;
 constexpr std::size_t roomy = 256;
 // Computed depths may be this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
@@ -56,7 +57,7 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
   }
 }
 
-/// The depth before which no segment of the stream's cells is.
+/// Returns the depth before which the stream's cells have no segments.
 std::int64_t LatticeSource::final_depth() const {
   const double near_depth = context_.depth_origin + order_->nearest_from(from_);
   const double steps = (near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;

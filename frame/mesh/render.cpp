@@ -40,7 +40,7 @@ struct Renderer::State {
     boundary = scene::with_threads(settings.threads, [&] { return boundary_faces(mesh); });
   }
 
-  /// The integrator of this function. Its tables are kept until the function changes.
+  /// Returns the integrator of this function. Its tables are kept until the function changes.
   const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
     if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
       kept.emplace(f, settings.integrator, settings.emission);

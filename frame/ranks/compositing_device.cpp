@@ -14,7 +14,7 @@
 namespace tessera::frame {
 namespace {
 
-/// Every rank's text, in rank order.
+/// Returns every rank's text, in rank order.
 std::vector<std::string> gather_texts(exchange::Transport& transport, exchange::MessageKind kind,
                                       std::string_view text) {
   exchange::Bytes mine = exchange::begin_message(kind);
@@ -25,7 +25,7 @@ std::vector<std::string> gather_texts(exchange::Transport& transport, exchange::
   return texts;
 }
 
-/// The number of lower ranks on this machine. Collective.
+/// Returns the number of lower ranks on this machine. Collective.
 int local_rank(exchange::Transport& transport) {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
@@ -35,7 +35,7 @@ int local_rank(exchange::Transport& transport) {
       std::count_if(hosts.begin(), hosts.begin() + transport.rank(), [&](const auto& h) { return h == mine; }));
 }
 
-/// The problem without the advice, which was already followed.
+/// Returns the description of the problem without the advice, which has already been followed.
 std::string reason(const scene::Error& error) {
   const std::string words = error.what();
   return words.substr(0, words.find(';'));

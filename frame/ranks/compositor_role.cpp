@@ -27,13 +27,14 @@ namespace {
 
 using exchange::Channel;
 
-/// Each worker that feeds a device waits for it with one tile: a few more workers keep tiles in flight.
+/// Each worker that feeds a device waits for the device with one tile, so a few more workers are needed to keep tiles
+/// in flight.
 int worker_count(const DistributedRun& run) {
   constexpr int tiles_in_flight = 6;
   return scene::threads_for(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
-/// An image of 1024 x 1024 pixels takes one thread a few milliseconds.
+/// One thread takes a few milliseconds to assemble an image of 1024 x 1024 pixels.
 int assembling_threads(const DistributedSettings& settings) {
   constexpr int most = 8;
   return std::min(scene::threads_for(settings.render.threads), most);
@@ -44,7 +45,7 @@ std::optional<projection::MatterLight> light_of(const DistributedRun& run, const
   return projection::MatterLight(*run.settings.render.mesh.shading, job.camera);
 }
 
-/// A frame on its compositor.
+/// The data of a frame on its compositor.
 struct Frame {
   Frame(const DistributedRun& run, std::uint32_t number, int compositor)
       : number(number),
@@ -67,11 +68,11 @@ struct Frame {
   std::optional<projection::MatterLight> light;
   compositor::TileSender sender;
   std::optional<integrals::LaneTable> table;  ///< for lattice segments, or for a device
-  scene::Lattice units;                       ///< on a device: those of the table
+  scene::Lattice units;                       ///< on a device: the units of the table
   double start_us = 0;
-  std::atomic<std::uint64_t> segments = 0;  ///< of cells that the device rasterized
-  std::atomic<bool> overlapping = false;    ///< cells of several projectors overlap
-  std::atomic<bool> stopped = false;        ///< tiles now lack fragments, and are not sent
+  std::atomic<std::uint64_t> segments = 0;  ///< number of segments of cells that the device rasterized
+  std::atomic<bool> overlapping = false;    ///< whether cells of several projectors overlap
+  std::atomic<bool> stopped = false;        ///< whether tiles lack fragments from now on, so that they are not sent
 
   struct Merge {
     std::unique_ptr<compositor::TileMerger> merger;
@@ -80,7 +81,7 @@ struct Frame {
   std::map<std::uint32_t, Merge> merges;  ///< tiles with fragments that are not finished
 };
 
-/// Receives on the calling thread, merges on its own threads.
+/// Receives messages on the calling thread, and merges on its own threads.
 class CompositorLoop {
  public:
   explicit CompositorLoop(const DistributedRun& run)
@@ -108,7 +109,7 @@ class CompositorLoop {
   }
 
  private:
-  /// The next message, or sometimes an empty one, as the last frame may finish without one.
+  /// Returns the next message, or sometimes an empty message, because the last frame may finish without one.
   exchange::Message next() {
     auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(20));
     if (message) return std::move(*message);
@@ -126,7 +127,7 @@ class CompositorLoop {
     return *at;
   }
 
-  /// Parts refer to their message's memory.
+  /// Takes a message. Parts refer to the memory of their message.
   void accept(int from, const std::shared_ptr<const exchange::Bytes>& message) {
     exchange::MessageReader reader(*message, from);
     const auto number = static_cast<std::uint32_t>(reader.take<std::uint64_t>());
@@ -179,8 +180,8 @@ class CompositorLoop {
     settle();
   }
 
-  /// Returns credit in few messages, since each wakes threads at both ends: when it reaches an eighth of what the
-  /// projector may have in transit, or when no other message arrives.
+  /// Returns credit in few messages, because each message wakes threads at both ends: when the credit reaches an eighth
+  /// of the bytes that the projector may have in transit, or when no other message arrives.
   void give_back(int projector, std::uint64_t bytes) {
     const auto p = static_cast<std::size_t>(projector);
     credit_[p] += bytes;
@@ -193,7 +194,7 @@ class CompositorLoop {
                         exchange::message_of(exchange::MessageKind::credit, std::exchange(credit_[projector], 0)));
   }
 
-  /// Ends finished frames and pays what is due of the first unfinished one.
+  /// Ends finished frames, and returns the credit that is due for the first unfinished frame.
   void settle() {
     while (!frames_.empty()) {
       Frame& first = *frames_.begin()->second;
@@ -221,7 +222,7 @@ class CompositorLoop {
     workers_.run([this, &of, tile] { merge_tile(of, tile); });
   }
 
-  /// The context of a frame's mergers.
+  /// Returns the context of a frame's mergers.
   compositor::MergeContext context_of(Frame& of, double longest_ray, float longest_edge, bool on_lattice) {
     const Settings& render = run_.settings.render;
     compositor::MergeContext context{
@@ -243,7 +244,7 @@ class CompositorLoop {
     return context;
   }
 
-  /// Runs on a worker. `of` exists until all its tiles are finished.
+  /// Called on a worker thread. The frame exists until all its tiles are finished.
   void merge_tile(Frame& of, std::uint32_t tile) {
     std::unique_lock lock(mutex_);
     for (bool all = false; !all;) {
@@ -286,7 +287,7 @@ class CompositorLoop {
   int self_;
   std::mutex mutex_;  // guards the frames, their collectors and merges, and credit
   std::map<std::uint32_t, std::unique_ptr<Frame>> frames_;
-  std::vector<std::uint64_t> credit_;  // by projector, bytes to return
+  std::vector<std::uint64_t> credit_;  // bytes to return to each projector
   std::atomic<std::size_t> frames_finished_ = 0;
   WorkerThreads workers_;  // last: its threads use all of the above
 };

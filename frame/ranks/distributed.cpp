@@ -28,7 +28,8 @@ ExchangeBudget exchange_budget(const DistributedSettings& settings) {
   const auto projectors = static_cast<std::uint64_t>(settings.roles.projectors.size());
   constexpr std::uint64_t most_ahead = 8 << 20, least_ahead = 256 << 10;
   constexpr std::uint64_t most_between_cuts = 4 << 20, least_between_cuts = 64 << 10;
-  // Half for the projector, the rest for a compositor's windows and the tiles that its threads merge.
+  // Half of the memory is for the projector; the rest is for a compositor's windows and the tiles that its threads
+  // merge.
   return {memory / 2, std::min<std::uint64_t>(memory / 16, 64 << 20),
           std::clamp(memory / 8 / projectors, least_ahead, most_ahead), memory / 4,
           std::clamp(memory / 16 / projectors, least_between_cuts, most_between_cuts)};
@@ -135,7 +136,7 @@ class DistributedRenderer::State {
     const std::stop_token stop = relayed.token();
     if (!opened_) {
       const bool projects = settings_.roles.projects(transport_.rank());
-      // Each rank has its own triangles of surfaces.
+      // With triangle surfaces there is no team, because each rank owns other triangles.
       if (settings_.render.use.sharing && settings_.roles.projectors.size() > 1 &&
           !settings_.render.surfaces.has_faces())
         team_ = exchange::HostTeam::form(transport_, projects);
@@ -175,7 +176,7 @@ class DistributedRenderer::State {
     guarded([&] {
       for (std::size_t i = 1; i < parts.size(); ++i)
         threads.push_back(scene::start_thread([&, i] { guarded(parts[i]); }));
-      parts.front()();  // projection, if there is any, on the calling thread
+      parts.front()();  // projection, if this rank projects, runs on the calling thread
     });
     for (auto& thread : threads) thread.join();
     transport_.check();
@@ -198,9 +199,9 @@ class DistributedRenderer::State {
   DistributedSettings settings_;
   const MeshOf mesh_of_;
   StopRelay relay_;
-  std::unique_ptr<exchange::HostTeam> team_;  ///< for a projector that shares its machine with others
-  std::optional<LoadedMesh> loaded_;          ///< of a projector
-  std::optional<std::size_t> number_;         ///< of the last mesh loaded
+  std::unique_ptr<exchange::HostTeam> team_;  ///< only for a projector that shares its machine with other projectors
+  std::optional<LoadedMesh> loaded_;          ///< only for a projector
+  std::optional<std::size_t> number_;         ///< number of the last mesh that was loaded
   CompositingDevice device_;
   bool opened_ = false;
 };

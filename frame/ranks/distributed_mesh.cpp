@@ -27,7 +27,7 @@ using exchange::MessageKind;
 using exchange::MessageReader;
 using exchange::Transport;
 
-// Facts of a mesh on which ranks agree; exchange/message.hpp lists the messages.
+// The facts of a mesh that ranks agree on. exchange/message.hpp lists the messages.
 
 Bytes message_of(const std::vector<cells::FieldTally>& tallies, const scene::Box& box,
                  const std::vector<std::string>& block_names) {
@@ -92,7 +92,7 @@ cells::MeshFile description_in(MessageReader& reader) {
   return file;
 }
 
-/// Reads all projectors' messages in their order; the other ranks send empty ones.
+/// Reads all projectors' messages in the order of the projectors. The other ranks send empty messages.
 template <class Read>
 void gather(Transport& transport, MessageKind kind, Bytes own, std::span<const int> projectors, const Read& read) {
   const std::vector<Bytes> all = exchange::gather_all(transport, std::move(own));

@@ -13,7 +13,7 @@ namespace {
 
 using scene::Team;
 
-/// The sum over all members, and over those before this one.
+/// A sum over all members, and a sum over the members before this one.
 struct Counts {
   std::uint64_t before = 0, all = 0;
   Counts(Team& team, std::uint64_t own) {
@@ -23,8 +23,8 @@ struct Counts {
   }
 };
 
-/// The position of each of this member's tets among those of all members, sorted by index, which is ascending in every
-/// member. Equal indices, which occur in parts without global indices, are sorted by member.
+/// Returns the position of each of this member's tets in the list of all members' tets. That list is sorted by index;
+/// each member's indices must ascend. Equal indices, which occur in parts without global indices, are sorted by member.
 std::vector<std::uint64_t> places_of(Team& team, std::span<const std::uint64_t> own) {
   const std::vector<std::uint64_t> sizes = team.gather(own.size());
   std::vector<std::span<std::uint64_t>> lists;

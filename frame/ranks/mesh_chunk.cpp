@@ -162,7 +162,7 @@ MeshPart ChunkReceiver::finish() {
     reorder(part_.global_tet);
     if (association_ == scene::Association::cell) reorder(mesh.scalars);
   }
-  // Vertices in the order of first use: compact in memory, and independent of the order of messages.
+  // Vertices are in the order of first use, which is compact in memory and independent of the order of messages.
   std::vector<std::uint32_t> number(mesh.positions.size(), unsent), old;
   old.reserve(mesh.positions.size());
   for (scene::Tet& tet : mesh.tets)

@@ -21,7 +21,7 @@ using exchange::MessageKind;
 using exchange::Transport;
 using projection::PartitionKind;
 
-/// Every rank's row, rank after rank; all have the length of this rank's row.
+/// Returns every rank's row, one rank after the other. All rows must have the length of this rank's row.
 std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<std::uint64_t>& row) {
   Bytes mine = begin_message(MessageKind::tet_table);
   append_list(mine, row);
@@ -36,7 +36,7 @@ std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<s
   return table;
 }
 
-/// The values as a message: field by field, since the structure has padding.
+/// Writes the values to a message field by field, because the structure has padding.
 Bytes message_of(const scene::MeshFacts& facts) {
   Bytes message = begin_message(MessageKind::mesh_facts);
   append(message, facts.box.low);
@@ -59,7 +59,7 @@ scene::MeshFacts facts_in(const Bytes& message, int from) {
   return facts;
 }
 
-/// As projection::parts_of_whole, for a mesh distributed over ranks.
+/// Does the same as projection::parts_of_whole, for a mesh that is distributed over ranks.
 std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& local, const scene::MeshFacts& facts,
                                          const projection::Partition& how, int parts) {
   std::vector<std::uint32_t> part_of(local.mesh.tets.size());
@@ -117,7 +117,8 @@ MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFac
 
   std::vector<std::uint64_t> row(projectors.size(), 0);
   for (const std::uint32_t p : part_of) ++row[p];
-  const std::vector<std::uint64_t> table = gather_rows(transport, row);  // tets from rank r for part p at r parts + p
+  // Element r parts + p: tets from rank r for part p.
+  const std::vector<std::uint64_t> table = gather_rows(transport, row);
   std::uint64_t coming = 0;
   bool moves = false;
   for (std::size_t k = 0; k < table.size(); ++k) {
@@ -129,13 +130,14 @@ MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFac
 
   ChunkReceiver receiver(facts, coming, transport.size());
   const auto own = std::find(projectors.begin(), projectors.end(), self);
-  // Each rank begins with another part, so that not all send to the same rank.
+  // Each rank begins with a different part, so that not all send to the same rank.
   const int first_part = own == projectors.end() ? self % parts : static_cast<int>(own - projectors.begin());
   ChunkSender sender(local, std::move(part_of), parts, first_part, limits.chunk_bytes);
   for (bool all_sent = false; !all_sent;) {
-    // A round: some messages, then the numbers of all ranks' messages. No rank gets past these before all have received
-    // the previous round.
-    std::vector<std::uint64_t> sent(projectors.size() + 1, 0);  // messages for each part; whether more will follow
+    // A round consists of some messages, then the numbers of all ranks' messages. No rank gets past the exchange of
+    // numbers before all ranks have received the previous round.
+    std::vector<std::uint64_t> sent(projectors.size() + 1,
+                                    0);  // messages for each part; the last element: whether more will follow
     std::size_t bytes = 0;
     int part = 0;
     Bytes message;

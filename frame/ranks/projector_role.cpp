@@ -40,10 +40,10 @@ int number_of(const DistributedRun& run) {
 
 exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
 
-/// The sinks of a frame, and what they refer to.
+/// The sinks of a frame, and the objects to which they refer.
 class FrameSinks {
  public:
-  /// `packs(tile)`: whether the tile's pixels leave this process.
+  /// `packs(tile)` returns whether the tile's pixels leave this process.
   FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh, bool has_all_cells,
              std::function<bool(std::size_t tile)> packs, exchange::PartWriter::Deliver deliver)
       : settings_(run.settings),
@@ -90,7 +90,8 @@ class FrameSinks {
           mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_, scene_.normals);
     return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
   }
-  /// Whether devices rasterize. If they cannot integrate the light of segments (GlMerger), the CPU does all the work.
+  /// Whether devices rasterize cells. If they cannot integrate the light of segments (GlMerger), the CPU does all the
+  /// work.
   [[nodiscard]] bool have_cells() const {
     return settings_.render.mesh.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
   }
@@ -123,7 +124,7 @@ class FrameSinks {
   std::optional<integrals::LaneTable> table_;
 };
 
-/// The team member that is compositor c, by c; -1: none.
+/// Returns, for each compositor c, the team member that is this compositor; -1: no member.
 std::vector<int> members_that_composite(const DistributedRun& run, const exchange::HostTeam& team) {
   std::vector<int> members;
   for (const int rank : run.settings.roles.compositors) {
@@ -196,7 +197,7 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                                     .watch = &watch},
                                    tile_sinks, team));
   } catch (const scene::FrameStopped&) {
-    // The other ranks wait for the announced tiles: the frame ends here, without fragments.
+    // The other ranks wait for the announced tiles, so the frame ends here, without fragments.
     stopped = true;
     if (loaded.team() != nullptr) loaded.team()->leave();
     if (!announced) announce(std::vector<bool>(grid.count(), false));
@@ -226,7 +227,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     project_frame(run, job, number, loaded, outbox);
     if (trace != nullptr) trace->add_frame(number, start_us);
   }
-  // The next list begins without frames in progress.
+  // Waits, so that no frames are in progress when the next list begins.
   for (; left < run.jobs.size(); ++left) wait_for_frame(run);
 }
 

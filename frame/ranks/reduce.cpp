@@ -28,7 +28,7 @@ std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vecto
     if (list.size() != values.size()) reader.refuse(fmt::format("adds {} numbers to {}", list.size(), values.size()));
     return list;
   };
-  // Through rank 0, like the other collectives, for the reason in exchange/collectives.cpp.
+  // The values pass through rank 0, like in other collectives, for the reason in exchange/collectives.cpp.
   if (transport.rank() != 0) {
     transport.send(0, Channel::agreement, message());
     return take();

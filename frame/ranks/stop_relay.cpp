@@ -9,7 +9,7 @@
 namespace tessera::frame {
 namespace {
 
-/// Sent to this rank itself: the run is over, and the listener ends.
+/// A rank sends this number to itself when the run is over, so that its listener ends.
 constexpr std::uint64_t end_of_run = 0;
 
 exchange::Bytes number_bytes(std::uint64_t number) { return exchange::message_of(exchange::MessageKind::stop, number); }
