@@ -46,7 +46,7 @@ scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelR
           std::min(size.height, region->y1)};
 }
 
-/// Regular grids: tiles of rays in float lanes.
+/// The cast of regular grids, with tiles of rays in float lanes.
 class LaneChunks final : public ChunkCast::State {
  public:
   LaneChunks(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
@@ -128,7 +128,7 @@ class LaneChunks final : public ChunkCast::State {
     });
   }
 
-  /// Index of the tile of a pixel, row by row.
+  /// Returns the index of the tile of a pixel; tiles are numbered row by row.
   [[nodiscard]] std::size_t number_at(int x, int y) const {
     return static_cast<std::size_t>((y / TileRays::side - region_.y0 / TileRays::side) * columns_ + x / TileRays::side -
                                     region_.x0 / TileRays::side);
@@ -140,7 +140,7 @@ class LaneChunks final : public ChunkCast::State {
   scene::PixelRect region_;
   std::optional<FrameSetup> setup_;
   std::optional<VoxelCaster> in_double_;
-  std::vector<TilePlace> places_;  ///< of `tiles_`
+  std::vector<TilePlace> places_;  ///< one per element of `tiles_`
   std::vector<TileState> tiles_;
   int columns_ = 0;
   std::vector<std::size_t> numbers_;  ///< indices into `tiles_`, row by row
@@ -148,7 +148,7 @@ class LaneChunks final : public ChunkCast::State {
   std::uint64_t again_ = 0;
 };
 
-/// Rectilinear grids: rays in double precision.
+/// The cast of rectilinear grids, with rays in double precision.
 class VoxelChunks final : public ChunkCast::State {
  public:
   VoxelChunks(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
@@ -218,7 +218,7 @@ class VoxelChunks final : public ChunkCast::State {
     VoxelRay ray;
     RaySum sum;
     double begun, reached;  ///< planar depths cast since the last emit()
-    double passed = 1;      ///< transmittance of the part before
+    double passed = 1;      ///< transmittance of the part before `begun`
     bool closed = false;
   };
 

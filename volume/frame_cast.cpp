@@ -24,7 +24,7 @@ struct Worker {
   TileMemory memory;
   TileCounts counts;
   std::vector<RayFragment> fragments;   ///< of the current tile
-  std::vector<UncertainRay> uncertain;  ///< of all its tiles
+  std::vector<UncertainRay> uncertain;  ///< uncertain rays of all tiles of this thread
   std::vector<scene::PixelRect> late;   ///< pixels of tiles with uncertain rays
   std::vector<TileTime> times;
 };
@@ -32,7 +32,7 @@ struct Worker {
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
 std::unique_ptr<Worker> new_worker() { return std::make_unique<Worker>(); }
 
-/// Processor time of this thread, which excludes the time of other threads on the same core.
+/// Returns the processor time of this thread, which excludes the time of other threads on the same core.
 double thread_microseconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -71,7 +71,7 @@ FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<co
     worker.fragments.clear();
     worker.tile.fragments(frame, worker.fragments, worker.uncertain);
     sink.take(worker.fragments);
-    // begin() counts rays that meet the volume; here only rays that meet the part count.
+    // begin() counts rays that meet the volume; here, only rays that meet the part are counted.
     const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
     if (!all) worker.counts.rays = rays_before + met;
     worker.times.push_back({worker.tile.pixels(), static_cast<float>(thread_microseconds() - begin)});

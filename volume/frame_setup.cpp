@@ -13,14 +13,14 @@
 namespace tessera::volume {
 namespace {
 
-/// World units: upper bound of the length of a ray in one voxel of a regular grid.
+/// Upper bound, in world units, of the length of a ray in one voxel of a regular grid.
 double longest_in_voxel(const scene::GridGeometry& geometry) {
   double sides = 0;
   for (int a = 0; a < 3; ++a) sides += glm::length(geometry.direction[a]) * std::abs(geometry.spacing[a]);
   return sides;
 }
 
-/// The linear part of the map from world to index space times `unit`.
+/// Returns the linear part of the map from world to index space, multiplied by `unit`.
 std::array<glm::dvec3, 3> index_rows(const scene::GridGeometry& geometry, double unit) {
   const glm::dmat3 to_local = scene::world_to_local(geometry);
   std::array<glm::dvec3, 3> rows;
@@ -37,8 +37,8 @@ std::pair<float, float> lane_range(const CellRanges& ranges) {
           integrals::lane_scalar(ranges.range.high, ranges.lanes.origin, ranges.lanes.unit)};
 }
 
-/// Lane scalars are below 2^29, so rounding to float leaves a rest of at most 2^5. Stored as a float, the rest has an
-/// error of 2^-19. A gradient is a difference of two.
+/// Lane scalars are below 2^29, so rounding to float leaves a rest of at most 2^5. The rest is stored as a float and
+/// then has an error of 2^-19. A gradient is a difference of two such values.
 constexpr float noise_of_rest = 0x1p-18f;
 
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
@@ -106,7 +106,7 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.has_rest = wants_gradients && !view_.lanes.exact && !in_steps(state.settings.integrator.kind);
   if (view_.has_rest) view_.rest_noise = noise_of_rest;
   view_.tally = tally;
-  // A thousand packets or more in images of at least 32 tiles.
+  // In images of at least 32 tiles, a thousand packets or more are cast.
   const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
   view_.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
   view_.trace = state.settings.trace;
@@ -139,14 +139,14 @@ std::vector<std::uint8_t> FrameSetup::visible_to_table(const RendererState& stat
   const std::array<glm::dvec3, 3> rows =
       index_rows(state.source.geometry(), state.settings.grid.step * state.voxel_side);
   std::array<double, 3> reach;
-  // The margin is much larger than the rounding of positions along rays.
+  // This margin is much larger than the rounding errors of positions along rays.
   for (std::size_t a = 0; a < 3; ++a) reach[a] = glm::length(rows[a]) + 0.05;
   return visible_to_steps(state.ranges, table_, reach, 1.25f * entry);
 }
 
 void FrameSetup::set_up_surfaces(const RendererState& state, const scene::TransferFunction& function) {
   SurfaceView& view = surface_view_.emplace(surfaces_.set(), view_.lanes);
-  view.noise = 4 * error_bound_.noise;  // at least that of any voxel (surface_pieces-inl.h)
+  view.noise = 4 * error_bound_.noise;  // at least the noise of any voxel (surface_pieces-inl.h)
   view.brightest = static_cast<float>(std::max(1.0, state.brightest(function)));
   view.unit = state.voxel_side;
   const std::array<glm::dvec3, 3> rows = index_rows(state.source.geometry(), view.unit);
@@ -157,7 +157,7 @@ void FrameSetup::set_up_surfaces(const RendererState& state, const scene::Transf
   view_.surfaces = &view;
 }
 
-/// Sets up what only some integrators need.
+/// Sets up the data that only some integrators need.
 void FrameSetup::set_up_method(const RendererState& state, const scene::TransferFunction& function) {
   if (in_steps(state.settings.integrator.kind)) {
     view_.step = state.settings.grid.step * state.voxel_side / state.length_unit;

@@ -26,14 +26,14 @@ Matter matter_at(const LaneTable& table, std::size_t interval, double s) {
           {channel(LaneTable::red), channel(LaneTable::green), channel(LaneTable::blue)}};
 }
 
-/// The largest difference of two colours, each multiplied by a factor.
+/// Returns the largest difference of two colours, each multiplied by a factor.
 double color_difference(const Matter& a, double times_a, const Matter& b, double times_b) {
   double most = 0;
   for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(times_a * a.color[c] - times_b * b.color[c]));
   return most;
 }
 
-/// The difference of two of them in light and opacity per unit of length.
+/// Returns the difference of two media in light and opacity, per unit of length.
 double difference(const Matter& a, const Matter& b, bool independent, double brightest) {
   const double light = color_difference(a, independent ? 1 : a.extinction, b, independent ? 1 : b.extinction);
   const double opacity = std::abs(a.extinction - b.extinction);
@@ -52,7 +52,7 @@ std::vector<float> those_above(double least, std::vector<float> numbers) {
 
 float bounded(double x) { return static_cast<float>(std::min(x, 1e18)); }
 
-/// By edge of the table: the distance by which rounding moved its knots, in lane scalars.
+/// Returns, for each edge of the table, the distance by which rounding moved its knots, in lane scalars.
 std::vector<double> knots_moved(const scene::TransferFunction& function, const LaneTable& table,
                                 const CellRanges& ranges) {
   const float* const edges = table.column(LaneTable::edge);
@@ -68,7 +68,7 @@ std::vector<double> knots_moved(const scene::TransferFunction& function, const L
   return moved;
 }
 
-/// The knots merged into an edge of the table if they have different values, otherwise none.
+/// Returns the knots that are merged into an edge of the table if they have different values; otherwise no knots.
 std::span<const scene::Knot> knots_at(const scene::TransferFunction& function, const LaneTable& table,
                                       std::size_t edge) {
   const auto& [least, largest] = table.edge_values[edge];
@@ -97,7 +97,7 @@ LaneErrorBound::LaneErrorBound(const scene::TransferFunction& function, const La
     for (const double s : {table.column(LaneTable::edge)[n], table.column(LaneTable::edge)[n + 1]})
       if (std::isfinite(s))
         densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
-  // The ends' positions have an error of 1e-6 voxels.
+  // The positions of the ends have an error of 1e-6 voxels.
   ends = 4e-6 * densest * settings.longest > settings.least;
 }
 
@@ -109,9 +109,9 @@ void LaneErrorBound::find_noise(const CellRanges& ranges, bool cell_data) {
     reach = std::max({reach, std::abs(low), std::abs(high)});
     steepest = std::max(steepest, high - low);
   }
-  // Two roundings of the field itself, and positions with an error of 5e-7 voxels (packet_lanes-inl.h). Cell data:
-  // rounding of the sample and of an edge. At least the last place of a float there, so that adding it to an edge has
-  // an effect.
+  // The noise consists of two roundings of the field and of positions with an error of 5e-7 voxels
+  // (packet_lanes-inl.h). For cell data, it consists of the rounding of the sample and of an edge. It is at least the
+  // last place of a float of this size, so that adding the noise to an edge has an effect.
   noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-23 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
@@ -127,7 +127,7 @@ void LaneErrorBound::find_steps(const scene::TransferFunction& function, const L
   for (std::vector<float>* each : {&step, &step_extinction, &step_red, &step_green, &step_blue, &step_light})
     each->assign(table.stride, 0.0f);
   for (std::size_t e = 1; e <= table.knot_count; ++e) {
-    // Knots closer than the noise are one step.
+    // Knots that are closer together than the noise are treated as one step.
     std::size_t below = e - 1, above = e;
     while (below > 0 && edges[below] > edges[e] - noise) --below;
     while (above < table.knot_count && edges[above + 1] < edges[e] + noise) ++above;

@@ -72,7 +72,7 @@ const scene::GridGeometry& Renderer::geometry() const { return state_->source.ge
 
 namespace {
 
-/// By cell: whether the function or a surface makes any of it visible.
+/// Returns one byte per cell: whether the function or a surface makes any part of the cell visible.
 std::vector<std::uint8_t> cells_shown(const RendererState& state, const scene::TransferFunction& function) {
   std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(function));
   const GridSurfaces surfaces = state.surfaces_of(function);
@@ -80,7 +80,7 @@ std::vector<std::uint8_t> cells_shown(const RendererState& state, const scene::T
   return visible;
 }
 
-/// The bricks that contain visible cells.
+/// Returns the bricks that contain visible cells.
 std::vector<CostBox> bricks_shown(const RendererState& state, const std::vector<std::uint8_t>& cells) {
   const BrickLayout& layout = state.bricks.layout();
   const std::vector<std::uint8_t> shown = volume::visible_bricks(state.ranges, cells, layout);
@@ -122,10 +122,10 @@ struct Cast {
   std::vector<std::uint8_t> brick_visible;
   FrameWork work;
   std::uint64_t cull_us = 0;
-  std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
+  std::uint64_t blocks_read = 0, block_bytes = 0;  ///< only for rectilinear grids
 };
 
-/// Restricts the visible bricks to those with voxels of a part.
+/// Restricts the visible bricks to those that have voxels of a part.
 std::vector<std::uint8_t> bricks_in(const VoxelBox& part, const BrickLayout& layout, std::vector<std::uint8_t> shown) {
   for (std::size_t brick = 0; brick < shown.size(); ++brick) {
     const scene::GridIndex place = layout.place(brick);

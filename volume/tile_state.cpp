@@ -12,7 +12,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The packets of a tile that a pilot pass casts: the first `count` of an ordered dither, shifted from tile to tile.
+/// Returns the packets of a tile that a pilot pass casts: the first `count` of an ordered dither, which is shifted from
+/// tile to tile.
 std::uint64_t pilot_packets_of(int tile_x, int tile_y, int count) {
   std::uint64_t packets = 0;
   for (int p = 0; p < TileRays::packets; ++p) {
@@ -78,8 +79,8 @@ bool TileState::enter(const FrameView& frame, const VoxelBox& chunk, int code) {
   bool any = false;
   for (int r = 0; r < TileRays::count; ++r) {
     double from = rays.k_in[r], to = rays.closed[r] != 0 ? -1 : rays.k_out[r];
-    // Clips [from, to) to where a + b k is in the chunk. Chunks that share a plane compute the same k for it. A ray in
-    // the plane belongs to the chunk above it, or below the volume's last plane.
+    // Clips [from, to) to where a + b k is in the chunk. Chunks that share a plane compute the same k for this plane. A
+    // ray in the plane belongs to the chunk above the plane; at the volume's last plane, to the chunk below it.
     const auto cut = [&](double a, double b, std::size_t axis) {
       const double low = number(chunk.low[axis]), high = number(chunk.high[axis]), end = number(frame.voxels[axis]);
       if (b == 0) {

@@ -40,8 +40,8 @@ std::uint64_t BrickCache::bytes_of(const BrickLayout& layout, std::size_t brick,
 
 std::uint64_t BrickCache::bytes_of(std::size_t brick) const { return bytes_of(layout_, brick, source_.grid().type); }
 
-/// Bytes to allocate for a brick: slightly smaller bricks at the ends of the axes get as much as the others, because
-/// the gap that they leave in the heap would be too small for others.
+/// Returns the bytes to allocate for a brick. Slightly smaller bricks at the ends of the axes get as many as the
+/// others, because the gap that they would leave in the heap would be too small for other bricks.
 std::uint64_t BrickCache::room_for(std::uint64_t bytes) const {
   const std::uint64_t largest = bytes_of(0);
   return holds_all_ || bytes < largest - largest / 8 ? bytes : largest;
@@ -56,8 +56,8 @@ void BrickCache::forget(std::size_t brick) {
   ++counts_.evictions;
 }
 
-/// The next brick to evict: not in use and, with the proximity policy, farther than `beyond`. The number of bricks if
-/// there is none.
+/// Returns the next brick to evict: a brick that is not in use and, with the proximity policy, farther than `beyond`.
+/// Returns the number of bricks if there is no such brick.
 std::size_t BrickCache::victim(float beyond) const {
   if (policy_ == CachePolicy::proximity) {
     for (auto it = by_distance_.rbegin(); it != by_distance_.rend() && it->first > beyond; ++it)
@@ -69,8 +69,8 @@ std::size_t BrickCache::victim(float beyond) const {
   return entries_.size();
 }
 
-/// Evicts bricks until `bytes` more fit; returns false if it cannot evict enough. An evicted brick's memory of suitable
-/// size is returned in `buffer`, so that the heap does not grow by its gaps.
+/// Evicts bricks until there is room for `bytes` more; returns false if it cannot evict enough. If the memory of an
+/// evicted brick has a suitable size, it is returned in `buffer`, so that the heap does not grow by gaps.
 bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer) {
   while (counts_.bytes + bytes > budget_) {
     const std::size_t goes = victim(beyond);
@@ -84,7 +84,7 @@ bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<st
   return true;
 }
 
-/// Evicts any bricks that are not in use. Reads the clock only if it has to evict.
+/// Evicts any bricks that are not in use. Reads the clock only if it must evict some.
 bool BrickCache::make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer) {
   if (counts_.bytes + bytes <= budget_) return true;
   const auto begin = Clock::now();
@@ -93,7 +93,7 @@ bool BrickCache::make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[
   return fits;
 }
 
-/// Reads a brick for which there is room, releasing the lock meanwhile. Afterwards the brick is not in use yet.
+/// Reads a brick for which there is room, and releases the lock while it reads. Afterwards the brick is not in use yet.
 void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bool ahead,
                       std::unique_lock<std::mutex>& lock, scene::Trace* trace) {
   Entry& entry = entries_[brick];
@@ -135,7 +135,7 @@ void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bo
 const std::byte* BrickCache::acquire(std::size_t brick, scene::Trace* trace) {
   Entry& entry = entries_[brick];
   if (holds_all_) {
-    // No brick is ever evicted: what is ready remains so, and use counts are not needed.
+    // In this case, bricks are never evicted: a brick that is ready remains ready, and use counts are not needed.
     if (const std::byte* ready = entry.ready.load(std::memory_order_acquire)) {
       unlocked_hits_.fetch_add(1, std::memory_order_relaxed);
       return ready;

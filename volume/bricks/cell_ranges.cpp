@@ -14,8 +14,8 @@
 namespace tessera::volume {
 namespace {
 
-/// Size in voxels, a multiple of cells, of the blocks that are read at once: about 64^3; whole rows if the source is
-/// stored slice by slice.
+/// Returns the size, in voxels, of the blocks that are read at once: a multiple of cells of about 64^3 voxels, or whole
+/// rows if the source is stored slice by slice.
 scene::GridIndex scan_block_size(const scene::SampleSource& source) {
   constexpr std::int64_t cell = CellRanges::side, cube = 64, most = cube * cube * cube;
   if (source.storage_block()[2] > 1) return {cube, cube, cube};
@@ -26,7 +26,7 @@ scene::GridIndex scan_block_size(const scene::SampleSource& source) {
   return {width, height, most / (width * height) / cell * cell};
 }
 
-/// Rounded outwards, so that a range of floats contains the range of doubles.
+/// Rounds outwards, so that a range of floats contains the range of doubles.
 float rounded_down(double x) {
   const auto f = static_cast<float>(x);
   return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
@@ -80,8 +80,8 @@ BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex
               high = finite && row[i] > high ? row[i] : high;
             }
             if (!blank) continue;
-            // A blank on the boundary of two cells counts in the upper one; on the volume's upper boundary, in the last
-            // one.
+            // A blank on the boundary of two cells counts in the upper cell; on the volume's upper boundary, in the
+            // last cell.
             const auto owned = [&](std::int64_t index, std::int64_t cell, std::size_t axis) {
               return index < (cell + 1) * side || index == samples[axis] - 1;
             };
@@ -144,7 +144,7 @@ CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
   }
   lanes = LaneSamples(grid, range);
   if (range.empty()) return;
-  // Floats of doubles were rounded outwards, which is much if all values differ only in their last places.
+  // The floats were rounded outwards, which is a large error if all values differ only in their last places.
   const float one = lanes.lane(whole.lowest), other = lanes.lane(whole.highest);
   const float least = std::min(one, other), most = std::max(one, other);
   for (std::size_t cell = 0; cell < low.size(); ++cell) {
@@ -191,11 +191,11 @@ bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table) {
 
 namespace {
 
-/// One byte per range of lane scalars; 0 if low > high.
+/// Returns one byte per range of lane scalars: whether some of the range is visible; 0 if low > high.
 std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const std::vector<float>& high,
                                             bool whole_numbers, const integrals::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
-  // Rounding may have exchanged the order of values and steps, or knots: by two last places of a float and a unit.
+  // Rounding may have exchanged the order of values and steps, or of knots: by two last places of a float and a unit.
   const auto uncertain = [&](std::size_t edge) {
     return table.is_moved[edge] != 0 || (table.has_steps && !whole_numbers);
   };
@@ -218,7 +218,7 @@ std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const
   return visible;
 }
 
-/// Replaces each cell's value by the `best` of the values up to `radius` cells away along an axis.
+/// Replaces each cell's value by the `best` of the values in cells up to `radius` cells away along an axis.
 template <class Best>
 void spread(const scene::GridIndex& cells, std::size_t axis, std::int64_t radius, const Best& best,
             std::vector<float>& values) {
@@ -264,7 +264,7 @@ std::vector<std::uint8_t> visible_to_steps(const CellRanges& ranges, const integ
 
 namespace {
 
-/// The first and last cell, along each axis, with voxels of a brick.
+/// Returns the first and last cell, along each axis, that has voxels of a brick.
 std::array<scene::GridIndex, 2> cells_of(const BrickLayout& layout, std::size_t brick) {
   const scene::GridIndex place = layout.place(brick);
   std::array<scene::GridIndex, 2> cells;

@@ -16,16 +16,16 @@
 namespace tessera::volume {
 namespace {
 
-/// The pixels whose rays determine the samples of a region: all of each tile with pixels in the region, even outside
-/// the image.
+/// Returns the pixels whose rays determine the samples of a region: all pixels of each tile with pixels in the region,
+/// even pixels outside the image.
 scene::PixelRect whole_tiles(const scene::PixelRect& region) {
   constexpr int side = TileRays::side;
   const auto up = [](int edge) { return (edge + side - 1) / side * side; };
   return {region.x0 / side * side, region.y0 / side * side, up(region.x1), up(region.y1)};
 }
 
-/// World units: rows of a tile's samples are at least eight voxels long, even if its rays need fewer
-/// (volume/bricks/slab_block.hpp).
+/// Returns the width of a row of a tile's samples, in world units. Rows are at least eight voxels long, even if the
+/// tile's rays need fewer (volume/bricks/slab_block.hpp).
 float row_width(const scene::GridGeometry& geometry) {
   double widest = 0;
   for (int a = 0; a < 3; ++a) widest = std::max(widest, std::abs(geometry.spacing[a]));
@@ -59,7 +59,8 @@ void LookAhead::begin(const scene::Camera& camera, scene::ImageSize size, const 
   std::vector<float> distances = outside_now_;
   if (limit_ > 0) {
     outside_next_ = frustum_distances(last_ ? next_view(*last_, camera) : camera, size, tiles, geometry, layout);
-    // Bricks of the next view are kept too, but are evicted before any that the current view may need (0 or less).
+    // Bricks of the next view are kept, too, but are evicted before any bricks that the current view may need (0 or
+    // less).
     constexpr float after_all_now = std::numeric_limits<float>::min();
     for (std::size_t brick = 0; brick < distances.size(); ++brick)
       distances[brick] = std::min(distances[brick], std::max(after_all_now, outside_next_[brick]));

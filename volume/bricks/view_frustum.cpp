@@ -15,7 +15,8 @@ struct BrickPlace {
   std::array<glm::dvec3, 3> half_sides;
 };
 
-/// World units. A cell's sample counts as located at the cell's low corner, and the box extends to the next corner.
+/// Returns a brick's place in world units. A cell's sample counts as located at the cell's low corner, and the box
+/// extends to the next corner.
 BrickPlace place_of(std::size_t brick, const scene::GridGeometry& geometry, const BrickLayout& layout) {
   const scene::SampleBox box = layout.box(layout.place(brick));
   BrickPlace place;
@@ -30,7 +31,7 @@ BrickPlace place_of(std::size_t brick, const scene::GridGeometry& geometry, cons
   return place;
 }
 
-/// World units: at distance 1 from the eye, in parallel views at any distance.
+/// Half the height of the view in world units: at distance 1 from the eye; in parallel views, at any distance.
 double half_height_of(const scene::Camera& camera) {
   return camera.projection == scene::ProjectionKind::perspective ? std::tan(glm::radians(camera.view_angle / 2))
                                                                  : camera.parallel_scale;
@@ -45,7 +46,7 @@ std::vector<float> frustum_distances(const scene::Camera& camera, scene::ImageSi
   const double pixel = 2 * half_height_of(camera) / size.height;
   const double left = (region.x0 - size.width / 2.0) * pixel, right = (region.x1 - size.width / 2.0) * pixel,
                low = (size.height / 2.0 - region.y1) * pixel, high = (size.height / 2.0 - region.y0) * pixel;
-  // Unit normals pointing inwards: of planes through the eye, or parallel to the view direction.
+  // Unit normals that point inwards, of planes through the eye or parallel to the view direction.
   const auto normal = [&](const glm::dvec3& across, double edge) {
     return perspective ? glm::normalize(basis.forward * edge - across) : -across;
   };

@@ -19,7 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Bounds of a packet's rays in the chunk that begins at first_k; `any` is whether light may be added to any of them.
+/// Returns bounds of a packet's rays in the chunk that begins at first_k. `any` states whether light may be added to
+/// any of these rays.
 HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int packet, double first_k, double last_k) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<double> d;
@@ -57,7 +58,8 @@ HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int pack
   return reach;
 }
 
-/// Lays out slabs and slices around all voxels that the packets may meet; false if all of them are invisible.
+/// Lays out slabs and slices around all voxels that the packets may meet. Returns false if all of these voxels are
+/// invisible.
 HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach& tile, const ChunkBox& box,
                         SlabBlock& block) {
   const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
@@ -111,7 +113,7 @@ HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts&
 }
 
 /// Casts rays of one axis code through a chunk of the volume. Packets that are not wanted are laid out, so that the
-/// bits of the others do not depend on them, but not cast.
+/// bits of other packets do not depend on which packets are wanted, but they are not cast.
 void cast_rays(const FrameView& frame, const VoxelBox& voxels, TileState& tile, int code, TileMemory& memory,
                TileCounts& counts) {
   const RayAxes axes = RayAxes::of(code);

@@ -8,7 +8,7 @@ namespace tessera::volume {
 
 GridSurfaces::GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function, const CellRanges& ranges)
     : set_(surfaces, function) {
-  std::vector<float> lanes;  // of the values, ascending
+  std::vector<float> lanes;  // lane scalars of the values, ascending
   for (const double value : set_.iso_values())
     lanes.push_back(integrals::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit));
   if (lanes.empty()) return;

@@ -20,8 +20,8 @@ SurfaceView::SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& l
   edge.assign(size, infinity);
   edge[0] = -infinity;
   const auto number = [](double v) { return static_cast<float>(v); };
-  // The derivative of cos^n a is n cos^(n-1) a sin a in magnitude: at most about sqrt(n / e), and at most n for small
-  // n.
+  // The derivative of cos^n a is n cos^(n-1) a sin a in magnitude. It is at most about sqrt(n / e), and for small n at
+  // most n.
   const double shine_slope = light.specular * std::min(light.shininess, 0.61 * std::sqrt(light.shininess + 1));
   const bool samples_exact = lanes.exact && (!lanes.whole || lanes.whole_numbers);
   value_noise = samples_exact ? 0 : 0x1p-24f;
@@ -38,7 +38,7 @@ SurfaceView::SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& l
     blue[n + 1] = number(paint.blue[own]), opacity[n + 1] = number(paint.opacity[own]);
     angle_weight[n + 1] = number(light.diffuse * brightest_channel + shine_slope);
   }
-  // A value with the same edge as another value is exact only if both are.
+  // A value that has the same edge as another value is exact only if both values are exact.
   for (std::size_t n = 1; n <= count; ++n)
     for (std::size_t other = 1; other <= count; ++other)
       if (edge[other] == edge[n]) exact[n] = std::min(exact[n], exact[other]);

@@ -13,9 +13,9 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double on_level = 1e-10;  // relative to a voxel's largest value, in a clip plane
+constexpr double on_level = 1e-10;  // in a clip plane; relative to a voxel's largest value
 
-constexpr double rounding = 1e-14;  // exceeds the error of field_at() relative to its largest value
+constexpr double rounding = 1e-14;  // upper bound of the error of field_at() relative to the largest value
 
 std::array<double, 8> differences(const std::array<double, 8>& corner, double value) {
   std::array<double, 8> d;
@@ -23,8 +23,8 @@ std::array<double, 8> differences(const std::array<double, 8>& corner, double va
   return d;
 }
 
-/// Linear interpolation for weights in [0, 1] that keeps a common sign of its values; weights of 0 and 1 return a
-/// value's own bits.
+/// Linear interpolation for weights in [0, 1]. If the values have the same sign, so has the result; weights of 0 and 1
+/// return the bits of a value.
 double between(double low, double high, double weight) { return low * (1 - weight) + high * weight; }
 
 double field_at(const std::array<double, 8>& v, const glm::dvec3& p) {
@@ -32,8 +32,8 @@ double field_at(const std::array<double, 8>& v, const glm::dvec3& p) {
                  between(between(v[4], v[5], p.x), between(v[6], v[7], p.x), p.y), p.z);
 }
 
-/// The zero of a cubic that is monotonic from u0 to u1 and below zero at exactly one of them. Newton's method, with
-/// bisection where a step leaves the bracket.
+/// Returns the zero of a cubic that is monotonic from u0 to u1 and below zero at exactly one of them. Uses Newton's
+/// method, with bisection where a step leaves the bracket.
 double zero_of(const std::array<double, 4>& p, double u0, double u1, bool rises) {
   constexpr double close = 1e-15;
   double u = (u0 + u1) / 2;
@@ -50,19 +50,19 @@ double zero_of(const std::array<double, 4>& p, double u0, double u1, bool rises)
 
 }  // namespace
 
-/// A ray's stretch in a voxel, from `front` to `back` in its unit cube.
+/// A ray's stretch in a voxel, from `front` to `back` in the unit cube of the voxel.
 struct SurfaceWalk::Stretch {
   std::array<double, 8> corner;
   glm::dvec3 front, back, side;
   bool front_cut, back_cut;
-  double size;  ///< the largest magnitude of the corners' values
+  double size;  ///< largest magnitude of the values at the corners
 
   [[nodiscard]] glm::dvec3 place(double u) const {
     return {between(front.x, back.x, u), between(front.y, back.y, u), between(front.z, back.z, u)};
   }
   [[nodiscard]] glm::dvec3 end_or_place(double u) const { return u == 0 ? front : u == 1 ? back : place(u); }
   [[nodiscard]] bool cut(double u) const { return (u == 0 && front_cut) || (u == 1 && back_cut); }
-  /// Whether the field is below a value, up to the last place.
+  /// Whether the field is below a value, exact to the last place.
   [[nodiscard]] bool below(double value, double u) const {
     const double height = field_at(differences(corner, value), end_or_place(u));
     return height < 0 && !(cut(u) && -height <= on_level * size);
@@ -155,8 +155,8 @@ double SurfaceWalk::cross(const VoxelRay& ray, const VoxelSteps& at, double thro
                                              values.begin());
   if (first >= last) return through;
   const Stretch stretch = stretch_of(ray, at.voxel(), z0, z1, corner);
-  // All values are relative to the first one. Where rounding may matter, below() uses differences from the value
-  // itself.
+  // All values are relative to the first value. Where rounding may matter, below() uses differences from the value in
+  // question.
   const std::array<double, 8> from_first = differences(corner, values[first]);
   const std::array<double, 4> cubic = cubic_of(from_first, stretch.front, stretch.back - stretch.front);
   std::array<double, 4> ends{0, 1, 1, 1}, field{};
@@ -172,7 +172,7 @@ double SurfaceWalk::cross(const VoxelRay& ray, const VoxelSteps& at, double thro
   };
   double behind = 0;
   for (std::size_t e = 0; e < count; ++e) {
-    // Monotonic from one end to the next, so surfaces are crossed in the order of their values.
+    // The field is monotonic from one end to the next, so surfaces are crossed in the order of their values.
     const bool up = field[e] <= field[e + 1];
     for (std::size_t n = 0; n < last - first; ++n) {
       const std::size_t iso = up ? first + n : last - 1 - n;

@@ -37,7 +37,7 @@ class VoxelPixels final : public WalkSink {
     least_ = settings.walk.least;
   }
 
-  /// Adds the light along a ray behind that in `sum`.
+  /// Adds the light along a ray behind the light in `sum`.
   void add(const VoxelRay& ray, RaySum& sum) {
     if (!(ray.begin < ray.end)) return;
     ++counts_.rays;

@@ -7,7 +7,7 @@
 namespace tessera::volume {
 
 std::array<double, 4> cubic_of(const std::array<double, 8>& corner, const glm::dvec3& front, const glm::dvec3& rise) {
-  // Interpolates linearly along each axis in turn; the degree of the polynomials increases by one each time.
+  // Interpolates linearly along one axis after the other; each time, the degree of the polynomials increases by one.
   std::array<std::array<double, 4>, 8> p{};
   for (std::size_t n = 0; n < 8; ++n) p[n][0] = corner[n];
   for (int axis = 0; axis < 3; ++axis) {

@@ -34,7 +34,7 @@ void VoxelLayers::add(const VoxelRay& ray, std::vector<integrals::RayLayer>& lay
   ray_ = &ray, ended_ = &layers;
   open_ = {};
   crossings_.clear();
-  // All crossings: a surface that is hidden from the eye may be visible in its layer.
+  // All crossings are needed: a surface that is hidden from the eye may be visible in its layer.
   if (surfaces_) surfaces_->find(ray, 0, crossings_);
   VoxelRay part = ray;
   for (const SurfaceCrossing& crossing : crossings_) {

@@ -12,7 +12,7 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double in_plane = 1e-9;  ///< voxels: a ray this close to a lattice plane counts as being in it
+constexpr double in_plane = 1e-9;  ///< in voxels; a ray this close to a lattice plane counts as being in the plane
 
 }  // namespace
 

@@ -27,9 +27,9 @@ struct VoxelWalk::FieldCubic {
     return at(m) + (c[2] + 3 * c[3] * m) * h * h / 3;
   }
   [[nodiscard]] double slope(double u) const { return (3 * c[3] * u + 2 * c[2]) * u + c[1]; }
-  /// A position at or just behind which the cubic, monotonic from u0 to u1, takes a value between those at the ends.
-  /// Uses Newton's method within a shrinking bracket, with bisection where a step leaves the bracket or convergence is
-  /// slow.
+  /// Returns a position at or just behind which the cubic has the given value, which is between the values at u0 and
+  /// u1. The cubic must be monotonic from u0 to u1. Uses Newton's method within a shrinking bracket, with bisection
+  /// where a step leaves the bracket or convergence is slow.
   [[nodiscard]] double crossing(double u0, double u1, double value) const {
     const double s_0 = at(u0), s_1 = at(u1);
     const bool rising = s_1 > s_0;
@@ -39,7 +39,7 @@ struct VoxelWalk::FieldCubic {
       const double above = at(u) - value;
       const bool before = (above < 0) == rising;
       (before ? u0 : u1) = u;
-      // Steps slightly beyond the root, so that the other end of the bracket moves as well.
+      // The step goes slightly beyond the root, so that the other end of the bracket moves as well.
       const double step = above / slope(u), beyond = std::abs(step) * 0x1p-8 + last_places / 2 * u1;
       u -= before ? step - beyond : step + beyond;
     }
@@ -80,7 +80,7 @@ void VoxelWalk::walk(const VoxelRay& ray, WalkSink& sink) {
   }
 }
 
-/// Walks through the voxel that contains the ray from depth z0 to z1.
+/// Walks through the voxel in which the ray is from depth z0 to z1.
 void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink) {
   if (!settings_.visible.empty() &&
       settings_.visible[static_cast<std::size_t>(
@@ -119,7 +119,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   for (std::size_t e = 0; e < count; ++e) {
     double u = ends[e];
     const double stop = ends[e + 1], s_stop = field.at(stop);
-    // Monotonic from u to stop, so knots are crossed in order.
+    // The cubic is monotonic from u to `stop`, so knots are crossed in order.
     while (u < stop) {
       const double s = field.at(u);
       const bool up = s_stop >= s;
@@ -136,7 +136,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   }
 }
 
-/// The next knot from s on, other than the one just crossed. Infinite if there is none.
+/// Returns the next knot from s on, other than the knot that was just crossed; infinite if there is none.
 double VoxelWalk::next_knot(double s, double crossed, bool up) const {
   constexpr double none = std::numeric_limits<double>::infinity();
   if (up) {
@@ -149,7 +149,7 @@ double VoxelWalk::next_knot(double s, double crossed, bool up) const {
   return k == knots_.begin() ? -none : std::prev(k)->value - origin_;
 }
 
-/// The index of the first knot above s.
+/// Returns the index of the first knot above s.
 std::size_t VoxelWalk::knots_above(double s) const {
   return static_cast<std::size_t>(
       std::upper_bound(knots_.begin(), knots_.end(), s,
@@ -157,7 +157,7 @@ std::size_t VoxelWalk::knots_above(double s) const {
       knots_.begin());
 }
 
-/// The knot number of s, which is between the knot `above` and the one before it.
+/// Returns the knot number of s, which is between knot `above` and the knot before it.
 double VoxelWalk::knot_number(std::size_t above, double s) const {
   if (above == 0) return -1;
   const auto below = static_cast<double>(above - 1);
@@ -166,8 +166,8 @@ double VoxelWalk::knot_number(std::size_t above, double s) const {
   return below + std::clamp((s - low) / (high - low), 0.0, 1.0);
 }
 
-/// A monotonic stretch in one interval of the transfer function. It is halved until a line with the same mean is
-/// accurate enough.
+/// Adds a monotonic stretch in one interval of the transfer function. The stretch is halved until a line with the same
+/// mean is accurate enough.
 void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, int halvings, WalkSink& sink) const {
   const FieldCubic& p = stretch.field;
   const double s_0 = p.at(u0), s_1 = p.at(u1), middle = p.at((u0 + u1) / 2), e = u1 - u0;
@@ -186,7 +186,7 @@ void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, in
     const double l = e * stretch.length, span = std::abs(s_1 - s_0), even = std::abs(middle - (s_0 + s_1) / 2);
     const double odd = std::abs(p.c[3]) * e * e * e, rho = even + odd / 4;
     const double tau = kappa * l, weight = independent_ ? l : tau;
-    // Lines are clipped to the interval; `cut` is the largest part of the shifted chord outside.
+    // Lines are clipped to the interval; `cut` is the largest part of the shifted chord that is outside of it.
     const double cut = std::max({0.0, low - std::min(s_0, s_1) - shift, std::max(s_0, s_1) + shift - high});
     const double cut_error = l * cut * (slope * std::max(1.0, color) + (independent_ ? 1 : kappa) * color_slope);
     const double error = cut_error +

@@ -22,7 +22,7 @@ class EdgesOfRow {
     count_ = (width + region_grain - 1) / region_grain * per_grain_;
   }
 
-  /// The number of the image's right edge; the left one is 0.
+  /// The number of the image's right edge; the left edge has number 0.
   [[nodiscard]] int last() const { return count_; }
   [[nodiscard]] SteppedEdge operator[](int number) const {
     const int tile_rows = number % per_grain_;
@@ -45,7 +45,7 @@ class Search {
   ImageSplit find() {
     const double all = costs_.of({0, 0, costs_.size().width, costs_.size().height}) +
                        std::accumulate(beside_.begin(), beside_.end(), 0.0);
-    // The search interval for the largest load: from a load that is too small to one that is sufficient.
+    // The range in which the largest load is searched: from a load that is too small to a load that is sufficient.
     double low = all / static_cast<double>(beside_.size()), high = 1.1 * low;
     while (!fits(high)) low = high, high *= 1.5;
     for (int n = 0; n < 12; ++n) {
@@ -66,7 +66,7 @@ class Search {
   }
 
   /// Whether the row's processes, beginning with `first`, can render the row's pixels with a load of at most `most`
-  /// each. Writes their edges.
+  /// each. Writes the edges of these processes.
   bool fits_row(std::size_t row, std::size_t first, int y0, int y1, double most, std::vector<int>& edges) const {
     const EdgesOfRow all(y0, y1, costs_.size().width);
     edges.assign(1, 0);
@@ -86,7 +86,7 @@ class Search {
     return edges.back() == all.last();
   }
 
-  /// Makes rows from the top, each as high as possible.
+  /// Makes rows from top to bottom, each as high as possible, and returns whether they cover the image.
   bool fits(double most) {
     std::size_t first = 0;
     int y0 = 0;
@@ -110,7 +110,7 @@ class Search {
 
   struct Row {
     int y0, y1;
-    std::size_t first;  ///< process
+    std::size_t first;  ///< first process of the row
     double most;
   };
 

@@ -23,8 +23,8 @@ constexpr int band_rows = 16;
 
 /// The outline of a box in the map.
 struct Outline {
-  std::array<glm::dvec2, 8> corner;  ///< in map pixels; bit a of the index: at the high end of axis a
-  int x0, y0, x1, y1;                ///< map pixels whose centres it may cover
+  std::array<glm::dvec2, 8> corner;  ///< in map pixels; bit a of the index is set for corners at the high end of axis a
+  int x0, y0, x1, y1;                ///< map pixels whose centres the box may cover
   bool behind_eye;
   double total;  ///< cost of the whole box for the depth of its centre
 };
@@ -99,7 +99,7 @@ class Costs {
         at(band, x, y) += visited(cells, (x + 0.5) / settings_.resolution, (y + 0.5) / settings_.resolution);
   }
 
-  /// Adds a sphere around the box, with its chords scaled to the box's total.
+  /// Adds a sphere around the box. The lengths of its chords are scaled to the box's total.
   void add_splat(const Outline& o, Band& band) const {
     double diameter = 0;
     for (int c = 0; c < 4; ++c)
@@ -107,8 +107,8 @@ class Costs {
           diameter, glm::length(o.corner[static_cast<std::size_t>(c)] - o.corner[static_cast<std::size_t>(7 - c)]));
     glm::dvec2 centre(0);
     for (const glm::dvec2& corner : o.corner) centre += 0.125 * corner;
-    // A diagonal that points to the eye appears short. The longest projected distance of any two corners is a lower
-    // bound of the sphere's diameter.
+    // A diagonal that points to the eye appears short, so the longest projected distance of any two corners is used; it
+    // is a lower bound of the sphere's diameter.
     double longest = 0;
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < a; ++b)
@@ -180,7 +180,7 @@ class Costs {
 
   [[nodiscard]] glm::dvec3 direction(double px, double py) const {
     glm::dvec3 d = rays_.direction + px * rays_.direction_x + py * rays_.direction_y;
-    // A ray parallel to a slab is entirely inside or outside; a tiny slope gives that result without 0 / 0.
+    // A ray parallel to a slab is entirely inside or outside of it; a tiny slope gives this result without 0 / 0.
     const double least = 1e-12 * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     for (int a = 0; a < 3; ++a)
       if (std::abs(d[a]) < least) d[a] = least;
@@ -196,8 +196,8 @@ class Costs {
     const double from = std::max({enter.x, enter.y, enter.z, rays_.near_depth});
     const double to = std::min({leave.x, leave.y, leave.z, rays_.far_depth});
     if (!(to > from)) return 0;
-    // k is the axis of the slabs, counted in the ray's direction; rays of a packet are at most two pixels to either
-    // side.
+    // k is the axis of the slabs, which are counted in the ray's direction. The other rays of a packet are at most two
+    // pixels away on either side.
     const glm::dvec3 steep = glm::abs(d);
     const int k = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
     const bool mirrored = d[k] < 0;
@@ -252,14 +252,14 @@ class Costs {
     return false;
   }
 
-  /// Cost per unit of planar depth along a pixel's ray.
+  /// Returns the cost per unit of planar depth along a pixel's ray.
   [[nodiscard]] double rate(double px, double py) const {
     if (!settings_.by_voxels) return space_.length_per_depth(px, py) / mean_voxel_;
     const glm::dvec3 d = glm::abs(direction(px, py));
     return d.x + d.y + d.z;
   }
 
-  /// Adds a triangle within a box's outline, with `weights` at its corners, linear in between.
+  /// Adds a triangle within a box's outline. `weights` are those at its corners; they are linear in between.
   void fill(const std::array<glm::dvec2, 3>& corners, const glm::dvec3& weights, const Outline& o, Band& band) const {
     const auto& [a, b, c] = corners;
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -283,7 +283,7 @@ class Costs {
   scene::PixelView space_;
   PixelRays rays_;
   bool perspective_;
-  double mean_voxel_, map_pixel_;  // world units; map_pixel_ at depth one in perspective views
+  double mean_voxel_, map_pixel_;  // in world units; map_pixel_ is that at depth one in perspective views
 };
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace tessera::volume {
 namespace {
 
-/// Edges 0 = e[0] <= ... <= e.back() = length of pieces whose costs are in proportion to `weights`. `before[i]` is the
-/// cost of the first i cells of a map with `resolution` cells per image pixel. Every piece has at least one pixel if
-/// there are enough pixels.
+/// Returns edges 0 = e[0] <= ... <= e.back() = length, which divide the length into pieces whose costs are in
+/// proportion to `weights`. `before[i]` is the cost of the first i cells of a map with `resolution` cells per image
+/// pixel. Every piece has at least one pixel if there are enough pixels.
 std::vector<int> cut(const std::vector<double>& before, double resolution, int length,
                      const std::vector<double>& weights, int grain) {
   if (length < grain * static_cast<int>(weights.size())) grain = 1;
@@ -157,7 +157,7 @@ ColumnSums SplitSearch::column_sums(const CostMap& map, const SummedArea& table,
 }
 
 ImageSplit SplitSearch::find_columns(const std::vector<ColumnSums>& parts) const {
-  // Cost above each requested map row, by column of the whole map.
+  // The cost above each requested map row, for each column of the whole map.
   std::vector<std::vector<std::uint64_t>> above(map_rows_.size(),
                                                 std::vector<std::uint64_t>(static_cast<std::size_t>(map_.width)));
   for (const ColumnSums& part : parts)

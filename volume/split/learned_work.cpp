@@ -20,7 +20,7 @@ std::vector<std::uint64_t> WorkTally::take() {
 }
 
 void WorkRates::add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums) {
-  // Reduces the sums by a quarter; the two numbers that share a word separately.
+  // Reduces the sums by a quarter. Two numbers share a word and are reduced separately.
   constexpr std::uint64_t low = 0xffffffffu;
   for (std::size_t word = 0; word < sums.size(); ++word) {
     std::uint64_t& sum = sums[word];
@@ -33,7 +33,7 @@ void WorkRates::learn(std::span<const std::uint64_t> tally) {
   struct Sums {
     double samples = 0, slabs = 0, depth = 0;
   };
-  // The cells, then cubes of twice the side at each level, up to a single cube.
+  // The first level contains the cells. At each further level, cubes have twice the side, up to a single cube.
   struct Level {
     scene::GridIndex cells;
     std::vector<Sums> sums;

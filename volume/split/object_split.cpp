@@ -16,9 +16,9 @@ namespace tessera::volume {
 struct ObjectSplit::Work {
   scene::GridIndex cells;
   std::span<const std::uint8_t> visible;
-  std::int64_t grain;  ///< voxels between possible planes
+  std::int64_t grain;  ///< number of voxels between two possible planes
 
-  /// Visible voxels of a box by slab of `grain` voxels along each axis.
+  /// Returns the visible voxels of each slab of a box, for slabs of `grain` voxels along each axis.
   [[nodiscard]] std::array<std::vector<double>, 3> slabs(const VoxelBox& box) const {
     std::array<std::vector<double>, 3> slabs;
     for (std::size_t a = 0; a < 3; ++a)
@@ -59,8 +59,8 @@ struct Cut {
   std::int64_t voxel;
 };
 
-/// The plane below which there is about `share` of a box's work: across the longest axis, unless another axis gives a
-/// clearly better division.
+/// Returns the plane that has about `share` of a box's work below it. The plane is across the longest axis, unless
+/// another axis gives a clearly better division.
 std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, const VoxelBox& box, std::int64_t grain,
                             double share) {
   std::int64_t longest = 0;
@@ -73,7 +73,7 @@ std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, con
     double below = 0;
     for (std::size_t s = 1; s < count; ++s) {
       below += slabs[a][s - 1];
-      // Without visible voxels, and among empty slabs: by number of voxels.
+      // If there are no visible voxels, and among empty slabs, the numbers of voxels are compared.
       const double by_voxels = std::abs(static_cast<double>(s) / static_cast<double>(count) - share);
       const double off = total > 0 ? std::abs(below / total - share) + 1e-3 * by_voxels : by_voxels;
       const double slender = static_cast<double>(box.high[a] - box.low[a]) / static_cast<double>(longest);
@@ -86,7 +86,7 @@ std::optional<Cut> best_cut(const std::array<std::vector<double>, 3>& slabs, con
   return best;
 }
 
-/// The brick size, or a fraction of it if there are few bricks.
+/// Returns the brick size, or a fraction of the brick size if there are few bricks.
 std::int64_t grain_of(const scene::GridIndex& voxels, int brick_size, int processes) {
   std::int64_t grain = brick_size;
   const auto count = [&] {
@@ -111,7 +111,8 @@ ObjectSplit::ObjectSplit(const scene::GridIndex& voxels, std::span<const std::ui
   cut(work, {{0, 0, 0}, voxels}, 0, processes);
 }
 
-/// Assigns the box to processes first .. last - 1. Returns the plane's index; -1 if the box is not divided.
+/// Assigns the box to processes first .. last - 1. Returns the index of the plane that divides the box; -1 if it is not
+/// divided.
 int ObjectSplit::cut(const Work& work, const VoxelBox& box, int first, int last) {
   const int above = first + (last - first) / 2;
   const std::optional<Cut> where =

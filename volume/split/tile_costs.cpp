@@ -12,10 +12,11 @@
 namespace tessera::volume {
 namespace {
 
-/// The fraction of a tile's cost that each part of it bears in full. Measured: 0.1 to 0.25, less with finer pixels.
+/// The fraction of a tile's cost that each part of the tile bears in full. Measurements gave 0.1 to 0.25, and less with
+/// finer pixels.
 constexpr double shared = 0.12;
 
-/// The overlap of a square and a range along one axis, in pixels.
+/// Returns the overlap of a square and a range along one axis, in pixels.
 int overlap(int square, int low, int high) {
   return std::min(high, (square + 1) * TileCosts::side) - std::max(low, square * TileCosts::side);
 }
@@ -65,7 +66,7 @@ float TileCosts::at(double x, double y) const {
 void TileCosts::turn_to(const scene::Camera& camera) {
   if (camera == camera_) return;
   const scene::PixelView next(camera, size_), last(camera_, size_);
-  // If the eye is inside the volume, the plane is kept in front of it, at half the distance of the middle or more.
+  // If the eye is inside the volume, the plane is kept in front of the eye, at half the distance of the middle or more.
   const glm::dvec3 to_middle = middle_ - next.position;
   const double depth = std::max(glm::dot(to_middle, next.basis.forward), 0.5 * glm::length(to_middle));
   std::vector<float> density;
@@ -102,7 +103,7 @@ void TileCosts::learn(std::span<const TileTime> times) {
          [&](std::size_t n, float covers) { of_tile += covers * density_[n], pixels += covers; });
     constexpr auto again = static_cast<float>(shared);
     const float scale = 1e3f * microseconds / std::max((1 - again) * of_part + again * of_tile, 1e-6f);
-    // A tenth is distributed uniformly, so that a square with zero cost can get a positive one.
+    // A tenth of the time is distributed uniformly, so that a square with zero cost can get a positive cost.
     constexpr float even = 0.1f;
     const float level = even * of_tile / pixels;
     each(part, [&](std::size_t n, float covers) {

@@ -9,8 +9,8 @@
 namespace tessera::volume {
 namespace {
 
-/// The voxel along an axis that contains a position in the grid's local frame; positions outside belong to the end
-/// voxels.
+/// Returns the voxel along an axis that contains a position in the grid's local frame; positions outside belong to the
+/// first or last voxel.
 std::int64_t voxel_at(const scene::GridGeometry& geometry, std::size_t axis, double local) {
   std::int64_t low = 0, high = geometry.points[axis] - 1;
   while (high - low > 1) {
@@ -24,8 +24,8 @@ std::int64_t voxel_at(const scene::GridGeometry& geometry, std::size_t axis, dou
 
 std::vector<VoxelBox> boxes_front_to_back(const scene::GridGeometry& geometry, const scene::GridIndex& sides,
                                           const scene::Camera& camera) {
-  // Boxes are sorted by their distance from the eye's box, in steps along the axes. Each box that a ray enters is a
-  // step farther from the eye's box than the one it leaves.
+  // Boxes are sorted by their distance from the box that contains the eye, in steps along the axes. Each box that a ray
+  // enters is one step farther from the eye's box than the box that the ray leaves.
   const glm::dmat3 to_local = scene::world_to_local(geometry);
   const glm::dvec3 eye = to_local * (camera.position - geometry.origin);
   const glm::dvec3 forward = to_local * scene::view_basis(camera).forward;
