@@ -28,7 +28,7 @@ class RegionGather {
 
   exchange::Transport& transport_;
   scene::Trace* trace_;
-  std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< by frame
+  std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< messages that arrived early, by frame number
 };
 
 /// Reports pixels that are final on rank 0 to `watch`. If `watch` throws FrameStopped, the frame stops.

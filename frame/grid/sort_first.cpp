@@ -347,15 +347,15 @@ class SortFirst::State {
   std::optional<volume::WorkTally> tally_;
   std::vector<std::uint64_t> learned_;         ///< tallies of all ranks since the last large change of view
   std::size_t pilots_ = 0;                     ///< number of pilot passes since then
-  std::vector<tessera::Knot> learned_knots_;   ///< of the last frame
-  std::optional<scene::Camera> learned_view_;  ///< of the last frame
+  std::vector<tessera::Knot> learned_knots_;   ///< knots of the last frame
+  std::optional<scene::Camera> learned_view_;  ///< view of the last frame
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
   SplitByTimes by_times_;                   ///< only on rank 0
   std::optional<VolumeJob> timed_;          ///< the last frame, until its times reach rank 0
   CastTimes times_here_;                    ///< the times of that frame on this rank
-  std::vector<tessera::Knot> timed_knots_;  ///< of the last frame
+  std::vector<tessera::Knot> timed_knots_;  ///< knots of that frame
   CostMap cost_;
 };
 

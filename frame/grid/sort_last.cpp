@@ -131,7 +131,7 @@ class SortLast::State {
   scene::Trace* const trace_;
   exchange::DirectSender sender_;
   std::optional<volume::ObjectSplit> split_;
-  std::vector<tessera::Knot> knots_;  ///< of the current split
+  std::vector<tessera::Knot> knots_;  ///< knots for which the current split was made
 };
 
 SortLast::SortLast(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)

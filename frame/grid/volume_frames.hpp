@@ -27,7 +27,7 @@ struct VolumeJob {
 struct FinishedVolumeFrame {
   std::size_t frame;  ///< index in the list of jobs
   scene::Image image;
-  volume::RenderStatistics statistics;    ///< of all ranks, combined as tessera::grid_counters specifies
+  volume::RenderStatistics statistics;    ///< statistics of all ranks, combined as tessera::grid_counters specifies
   std::vector<scene::PixelRect> regions;  ///< for each rank, the pixels that it finished, except steps in its edges
   std::vector<GridCounters> ranks;        ///< the counters combined in `statistics`
   std::vector<double> cpu_seconds;        ///< for each rank, CPU time of rendering, summed over its threads

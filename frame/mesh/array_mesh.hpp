@@ -27,7 +27,7 @@ struct ArrayMesh {
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
                          const cells::HigherOrderPlanning& planning = cells::plan_higher_order);
 
-/// The same for callers that only write the mesh: the arrays are borrowed without checking their values.
+/// Converts the arrays for callers that only write the mesh: arrays are borrowed without checking their values.
 ArrayMesh mesh_to_write(const MeshArrays& arrays);
 
 /// Describes an existing mesh by the arrays of a caller; they are borrowed from `owner`.

@@ -25,7 +25,7 @@ namespace tessera::frame {
 
 /// The result of culling a frame.
 struct FrameProjector::Culled {
-  std::vector<projection::Step> steps;  ///< of the transfer function and surfaces
+  std::vector<projection::Step> steps;  ///< steps of the transfer function and of surfaces
   projection::CellsAtSteps at_steps;    ///< cells whose segments are cut at the steps
   projection::TileLists lists;
   std::optional<projection::FrameFaces> faces;

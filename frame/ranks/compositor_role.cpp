@@ -67,7 +67,7 @@ struct Frame {
   scene::SurfaceSet surfaces;
   std::optional<projection::MatterLight> light;
   compositor::TileSender sender;
-  std::optional<integrals::LaneTable> table;  ///< for lattice segments, or for a device
+  std::optional<integrals::LaneTable> table;  ///< set for lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the units of the table
   double start_us = 0;
   std::atomic<std::uint64_t> segments = 0;  ///< number of segments of cells that the device rasterized

@@ -18,7 +18,7 @@ namespace tessera::frame {
 /// One rank's part of a mesh that several read together.
 struct DistributedMesh {
   MeshPart part;           ///< this rank's tets; empty on ranks that do not project
-  scene::MeshFacts facts;  ///< of the whole mesh
+  scene::MeshFacts facts;  ///< facts of the whole mesh
   /// Field and facts without the user's selection of cells; null: the options select everything.
   std::shared_ptr<const FieldOfAll> of_all;
   /// The result of io::read_mesh for the whole file, the same on every rank. Its mesh, however, contains only the
