@@ -72,7 +72,7 @@ class FrameCollector {
 
   int projectors_;
   const std::vector<std::uint32_t>* numbers_;  ///< numbers of this compositor's tiles, in order
-  std::vector<Tile> tiles_;                    ///< in the same order
+  std::vector<Tile> tiles_;                    ///< one per element of `numbers_`
   std::size_t first_unfinished_ = 0;
   int begins_ = 0, ends_ = 0, ends_awaited_ = 0;
   double longest_ray_ = 0;

@@ -89,7 +89,7 @@ static_assert(sizeof(RunRecord) == 32);
 
 struct ChainHeader {
   std::uint32_t pixel, links;
-  double front, scalar_front;  ///< of the first link; `scalar_front` is unused for cell data
+  double front, scalar_front;  ///< depth and scalar of the first link's front; `scalar_front` is unused for cell data
 };
 static_assert(sizeof(ChainHeader) == 24);
 

@@ -202,7 +202,7 @@ class Exchange {
   std::span<float> error_bounds_;
   std::size_t place_;
   std::vector<Layer> layers_;
-  std::vector<PixelRect> packets_;  ///< of this rank's band
+  std::vector<PixelRect> packets_;  ///< rows of each packet of this rank's band
   /// One list per sender, in the order of sending; a message is empty once it is composited.
   std::vector<std::vector<Message>> came_;
   std::size_t next_layer_ = 0, next_packet_ = 0;
