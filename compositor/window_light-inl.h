@@ -50,7 +50,7 @@ struct LightRows {
   alignas(64) std::int32_t front[numbers], back[numbers];
   alignas(64) std::int32_t interval[numbers];
   alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
-  alignas(64) float own[numbers], white[numbers];  ///< of lit matter: SegmentLight
+  alignas(64) float own[numbers], white[numbers];  ///< SegmentLight of each segment; only for lit matter
   // The positions of segments that need more than one piece, until these segments fill the lanes.
   alignas(64) std::int32_t waiting_at[numbers + most_lanes];
   std::size_t waiting = 0;
