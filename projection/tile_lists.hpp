@@ -32,7 +32,7 @@ struct TileGrid {
 struct CullCounts {
   std::uint64_t invisible = 0;       ///< the transfer function is zero over all of their scalars
   std::uint64_t outside_view = 0;    ///< outside the window or the clipping range
-  std::uint64_t between_pixels = 0;  ///< in view, but too small to cover the centre of a pixel
+  std::uint64_t between_pixels = 0;  ///< cells in view that are too small to cover the centre of a pixel
   std::uint64_t projected = 0;
 };
 
