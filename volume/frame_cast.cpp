@@ -23,7 +23,7 @@ struct Worker {
   TileState tile;
   TileMemory memory;
   TileCounts counts;
-  std::vector<RayFragment> fragments;   ///< of the current tile
+  std::vector<RayFragment> fragments;   ///< fragments of the current tile
   std::vector<UncertainRay> uncertain;  ///< uncertain rays of all tiles of this thread
   std::vector<scene::PixelRect> late;   ///< pixels of tiles with uncertain rays
   std::vector<TileTime> times;

@@ -32,7 +32,7 @@ namespace HWY_NAMESPACE {
 /// The factor for the field's own colour, and the white light that is added per unit of opacity.
 struct Lit {
   VF own, white;
-  VF error;  ///< of light per unit of opacity, from rounding of the gradient
+  VF error;  ///< error of light per unit of opacity, from rounding of the gradient
 };
 
 /// The field's change per voxel along the ray's axes.

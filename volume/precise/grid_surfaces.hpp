@@ -19,7 +19,7 @@ class GridSurfaces {
   /// The surfaces must be valid. Without the ranges of a grid, any cell may contain surfaces.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function)
       : set_(surfaces, function), any_(!set_.empty()) {}
-  /// For a grid whose cells have these ranges.
+  /// Finds the cells that contain surfaces, for a grid whose cells have these ranges.
   GridSurfaces(const Surfaces& surfaces, const scene::TransferFunction& function, const CellRanges& ranges);
 
   [[nodiscard]] const scene::SurfaceSet& set() const { return set_; }

@@ -54,8 +54,8 @@ struct WalkSettings {
 };
 
 /// Walks along rays from voxel to voxel in double precision, for regular and rectilinear grids with point or cell data.
-/// For one thread. The cubic of the trilinear field is divided at its extrema and at the knots of the transfer
-/// function, and into stretches so short that a line with the same mean gives their light within the tolerance
+/// A walk is used by one thread. The cubic of the trilinear field is divided at its extrema and at the knots of the
+/// transfer function, and into stretches so short that a line with the same mean gives their light within the tolerance
 /// (ray_piece-inl.h derives the bound). The field is computed relative to a knot among the voxel's values, or to the
 /// least of them, because fields and knots may differ only in the last places of doubles.
 class VoxelWalk {

@@ -16,7 +16,7 @@ namespace tessera::volume {
 /// Map pixel (x, y) represents the image's pixels around ((x + 0.5) / resolution, (y + 0.5) / resolution).
 struct CostMap {
   double resolution = 1;            ///< map pixels per image pixel along each axis
-  scene::ImageSize size{0, 0};      ///< of the whole map
+  scene::ImageSize size{0, 0};      ///< size of the whole map, in map pixels
   scene::PixelRect region{};        ///< the part of the map that is stored, in map pixels
   std::vector<std::uint32_t> cost;  ///< row by row in the region
 
@@ -62,7 +62,7 @@ void each_rectangle(int y0, int y1, const SteppedEdge& left, const SteppedEdge& 
 /// Rendering", SFU 2008, 4.2). Each row may have any number of columns, so any number of processes is possible.
 struct ImageSplit {
   std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
-  std::vector<std::vector<int>> columns;  ///< for each row: edges from 0 to the width
+  std::vector<std::vector<int>> columns;  ///< for each row: edges of its rectangles, from 0 to the width
   /// One value for each of these edges: the y above which the edge is `region_grain` pixels further to the right. It is
   /// a multiple of a tile's side, or the row's upper edge. Empty if no edge has a step.
   std::vector<std::vector<int>> steps{};
@@ -89,7 +89,7 @@ ImageSplit even_split(int processes, scene::ImageSize size, const scene::PixelRe
 /// All processes gather the sums of all others and find the same edges. If one process has the whole map, it finds the
 /// same split from a single part.
 struct RowSums {
-  scene::PixelRect region{};        ///< in map pixels
+  scene::PixelRect region{};        ///< region of the map to which the sums belong, in map pixels
   std::vector<std::uint64_t> rows;  ///< one value per row of the region
 };
 struct ColumnSums {
