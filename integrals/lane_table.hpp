@@ -60,7 +60,7 @@ struct LaneTable {
   /// `scalar_unit` and `length_unit` must be powers of two.
   LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit, double length_unit,
             scene::Emission emission, StepRounding steps = StepRounding::nearest);
-  /// For segments on a lattice: lengths are in the lattice's depth steps.
+  /// Makes the table for segments on a lattice, whose lengths are in the lattice's depth steps.
   LaneTable(const scene::TransferFunction& function, const scene::Lattice& lattice, scene::Emission emission)
       : LaneTable(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, emission) {}
 

@@ -48,7 +48,7 @@ class RayLayers {
   /// A part of a ray on which the scalar is linear.
   struct Stretch {
     double front, back, scalar_front, scalar_back;  ///< planar depths, and the scalars there
-    double length;                                  ///< in world units
+    double length;                                  ///< length of the stretch in world units
     double own = 1, white = 0;                      ///< shading turns a colour c into own * c + white
   };
 
