@@ -14,10 +14,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How a number is stored.
+/// Type in which a number is stored.
 enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// The type in which a C++ number is stored.
+/// The NumberType of a C++ number type.
 template <class T>
 requires std::is_arithmetic_v<T>
 constexpr NumberType number_type_of() {
@@ -30,9 +30,9 @@ constexpr NumberType number_type_of() {
   }
 }
 
-/// Contiguous numbers in the caller's memory: any vector, array or span of numbers, of glm::dvec3, which counts as
-/// three, or of CellType, which counts as uint8. It does not own the memory, which must stay valid while the view is
-/// used.
+/// A view of contiguous numbers in the caller's memory. It can be made from any vector, array or span of numbers, of
+/// glm::dvec3 (each counts as three numbers), or of CellType (stored as uint8). The view does not own the memory, which
+/// must stay valid while the view is used.
 class ArrayView {
  public:
   ArrayView() = default;
@@ -62,7 +62,7 @@ class ArrayView {
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] NumberType type() const { return type_; }
 
-  /// The numbers themselves if they are stored as T; otherwise an empty span.
+  /// Returns the numbers if they are stored as T; otherwise an empty span.
   template <class T>
   [[nodiscard]] std::span<const T> as() const {
     return type_ == number_type_of<T>() ? std::span(static_cast<const T*>(data_), size_) : std::span<const T>();

@@ -15,7 +15,7 @@ struct ImageSize {
   bool operator==(const ImageSize&) const = default;
 };
 
-/// Largest width or height accepted; beyond it, pixel coordinates would need more than 16 bits.
+/// Largest accepted width or height. Pixel coordinates of larger images would need more than 16 bits.
 inline constexpr int max_image_side = 65536;
 
 enum class ProjectionKind { orthographic, perspective };
@@ -26,50 +26,53 @@ struct ClippingRange {
   bool operator==(const ClippingRange&) const = default;
 };
 
-/// A view in VTK's terms. World units, right-handed. Pixels are square: the width of the window follows from the image.
+/// A camera with the same parameters as a VTK camera. World units, right-handed coordinates. Pixels are square, so the
+/// width of the view follows from its height and the image size.
 struct Camera {
   glm::dvec3 position{0, 0, 1}, focal_point{0, 0, 0}, view_up{0, 1, 0};
   ProjectionKind projection = ProjectionKind::orthographic;
-  double parallel_scale = 1;  ///< orthographic: half the window's height, world units
+  double parallel_scale = 1;  ///< orthographic: half the height of the view, world units
   double view_angle = 30;     ///< perspective: vertical field of view, degrees, in (0, 180)
   /// Without a range only the eye clips: anything at planar depth <= 0 is invisible in both projections.
   std::optional<ClippingRange> clipping_range;
   bool operator==(const Camera&) const = default;
 };
 
-/// Orthonormal axes of a view, world frame. `up` points to the top of the image, `forward` into it.
+/// Orthonormal axes of a view, in world coordinates. `up` points to the top of the image, `forward` into it.
 struct ViewBasis {
   glm::dvec3 right, up, forward;
 };
 
-/// Throws Error(bad_input) if the camera has no direction, a `view_up` along it, a non-finite number, a scale or an
-/// angle out of range, or an empty clipping range. The message names the wrong member and states what is allowed.
+/// Throws Error(bad_input) if `position` equals `focal_point`, `view_up` is along the view direction, a number is not
+/// finite, the scale or the angle is out of range, or the clipping range is empty. The message contains the name of the
+/// wrong member and the allowed values.
 TESSERA_EXPORT void validate(const Camera& camera);
 
 /// Throws Error(bad_input) unless both sides are in [1, max_image_side].
 TESSERA_EXPORT void validate(ImageSize size);
 
-/// Axes of a valid camera. Axis-aligned views give exact unit vectors.
+/// Returns the axes of a valid camera. They are exact unit vectors if the view is aligned with the axes.
 TESSERA_EXPORT ViewBasis view_basis(const Camera& camera);
 
-/// Axis-aligned box, world units. Empty while low > high.
+/// Axis-aligned box, world units. The default box is empty (low > high).
 struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
   [[nodiscard]] bool empty() const { return low.x > high.x; }
   bool operator==(const Box&) const = default;
 };
 
-/// Length of a box's diagonal, world units; 0 if it has no extent.
+/// Length of the box's diagonal, world units; 0 if the box has no extent.
 TESSERA_EXPORT double diagonal(const Box& box);
 
-/// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box runs across
-/// the image. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, with the eye as near
-/// as the box allows, always outside it. `turning`: wide enough for the box at every turn of orbit().
+/// Returns a view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box is
+/// horizontal in the image. A flat, thin or one-point box also gives a valid camera. In perspective, the view angle is
+/// 30 degrees and the eye is as near as the box allows, but always outside it. If `turning`, the view is wide enough
+/// for the box at every turn of orbit().
 TESSERA_EXPORT Camera frame_box(const Box& box, ImageSize size,
                                 ProjectionKind projection = ProjectionKind::orthographic, bool turning = false);
 
-/// The same view turned by `turn` (0..1 is one full turn) about the axis `view_up` through the focal point: one frame
-/// of an orbit.
+/// Returns the camera rotated about the axis through the focal point along `view_up`: one frame of an orbit. A `turn`
+/// of 1 is a full turn.
 TESSERA_EXPORT Camera orbit(const Camera& camera, double turn);
 
 }  // namespace v0_1

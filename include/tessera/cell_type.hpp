@@ -7,10 +7,11 @@ namespace tessera {
 inline namespace v0_1 {
 
 /// The type of a mesh's cell (MeshArrays::types). Names, values and the order of the points are those of VTK
-/// (vtkCellType.h), so an array of VTK's numbers can be passed as it is. The comments give the number of points; n is
-/// the order of the cell, at least 1.
+/// (vtkCellType.h), so an array of VTK's numbers can be passed unchanged. The comment of each type gives its number of
+/// points; n is the order of the cell, at least 1.
 ///
-/// Cells without volume are left out of the mesh. Other types with a volume are an error that names the cell.
+/// Cells without volume are left out of the mesh. VTK's other types of cells with a volume cause an error that contains
+/// the number of the cell.
 enum class CellType : std::uint8_t {
   // Linear cells.
   tetra = 10,             ///< 4
@@ -20,7 +21,7 @@ enum class CellType : std::uint8_t {
   pyramid = 14,           ///< 5
   pentagonal_prism = 15,  ///< 10
   hexagonal_prism = 16,   ///< 12
-  convex_point_set = 41,  ///< any number; the cell is their convex hull
+  convex_point_set = 41,  ///< any number; the cell is the convex hull of its points
   polyhedron = 42,        ///< any number; the cell is given by its faces (MeshArrays::faces)
 
   // Cells of second order: corners first, then the middles of edges, faces and the cell.
@@ -34,7 +35,8 @@ enum class CellType : std::uint8_t {
   biquadratic_quadratic_hexahedron = 33,  ///< 24
   triquadratic_pyramid = 37,              ///< 19
 
-  // Cells of any order, the same along all axes. With any other number of points they are drawn by their corners.
+  // Cells of any order, which is the same along all axes. A cell with another number of points than those listed is
+  // drawn as a linear cell between its corners.
   lagrange_tetrahedron = 71,  ///< (n + 1) (n + 2) (n + 3) / 6, n up to 100; or 5, 7, 8, 11, 14, 15, 16
   lagrange_hexahedron = 72,   ///< (n + 1)^3, n up to 100; or 9, 16, 21, 26, 32, 56
   lagrange_wedge = 73,        ///< (n + 1)^2 (n + 2) / 2, n up to 100; or 16, 20, 21, 24, 38
@@ -42,7 +44,7 @@ enum class CellType : std::uint8_t {
   bezier_tetrahedron = 78,    ///< (n + 1) (n + 2) (n + 3) / 6, n up to 12
   bezier_hexahedron = 79,     ///< (n + 1)^3, n up to 12
   bezier_wedge = 80,          ///< (n + 1)^2 (n + 2) / 2, n up to 12
-  bezier_pyramid = 81,        ///< at least 5; drawn by its corners
+  bezier_pyramid = 81,        ///< at least 5; drawn as a linear cell between its corners
 
   // Cells without volume.
   empty_cell = 0,               ///< 0

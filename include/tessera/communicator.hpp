@@ -9,20 +9,20 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The processes that work on one data set or frame together, numbered from 0: this process alone, or those of an MPI
-/// communicator (tessera/mpi.hpp makes one from an MPI_Comm).
+/// The processes (ranks, numbered from 0) that work together on one data set or frame: this process alone, or the
+/// processes of an MPI communicator (tessera/mpi.hpp makes a Communicator from an MPI_Comm).
 ///
 /// Sessions and data sets duplicate the communicator they receive, so that their messages are separate from those of
-/// the caller and of other sessions. They neither start nor end MPI. A thread of their own calls MPI while the caller's
-/// threads may do so too, so the caller must start MPI with MPI_THREAD_MULTIPLE; a lower level is an Error. A single
-/// process needs no MPI at all.
+/// the caller and of other sessions. They neither start nor end MPI. They call MPI on a thread of their own, possibly
+/// while the caller's threads call MPI too. The caller must therefore start MPI with MPI_THREAD_MULTIPLE; a lower level
+/// causes an Error. A single process needs no MPI at all.
 class TESSERA_EXPORT Communicator {
  public:
   /// This process alone.
   Communicator();
-  /// From an MPI communicator, by its Fortran handle (MPI_Comm_c2f). Throws Error(bad_input) if MPI has not been
-  /// initialised; Error(system_failure) in a build without MPI. Sessions and data sets of more than one rank throw
-  /// Error(bad_input) without MPI_THREAD_MULTIPLE.
+  /// Makes a Communicator from the Fortran handle (MPI_Comm_c2f) of an MPI communicator. Throws Error(bad_input) if MPI
+  /// has not been initialised, and Error(system_failure) in a build without MPI. Sessions and data sets of more than
+  /// one rank throw Error(bad_input) if MPI was started without MPI_THREAD_MULTIPLE.
   static Communicator of_handle(int fortran_handle);
 
   [[nodiscard]] int rank() const;
@@ -37,9 +37,9 @@ class TESSERA_EXPORT Communicator {
   std::shared_ptr<const State> state_;
 };
 
-/// Runs `work` once per rank, each on its own thread, with a communicator of these threads, and returns when all have
-/// returned: a parallel job without MPI. An exception on one rank ends the run for all ranks; the first error is thrown
-/// here.
+/// Runs a parallel job without MPI: calls `work` once per rank, each on its own thread, with a communicator of these
+/// threads, and returns when all calls have returned. An exception on one rank ends the run for all ranks. The function
+/// throws the first error.
 TESSERA_EXPORT void run_ranks(int ranks, const std::function<void(const Communicator&)>& work);
 
 }  // namespace v0_1

@@ -10,19 +10,20 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A row of a table of counters: its name in reports, how the values of several processes are combined, and what it
-/// counts. Sums, messages between processes and reports loop over these tables: a new counter is a member and a row.
+/// A row of a table of counters: the counter's name in reports, how the values of several processes are combined, and
+/// what is counted. Sums, messages between processes and reports loop over these tables, so a new counter requires only
+/// a member and a row.
 template <class Counters, class Number = std::uint64_t>
 struct Counter {
   enum class Together { sum, largest };
   std::string_view name;
   Number Counters::*member;
   Together together;
-  bool if_any;  ///< reports omit it if it is 0
+  bool if_any;  ///< reports omit the counter if it is 0
   std::string_view meaning;
 };
 
-/// Adds `others` to `sums`, combining each counter as its row of the table states.
+/// Adds `others` to `sums`. Each counter is combined as its row of the table states.
 template <class Row, std::size_t count, class Counters>
 void add_counters(const std::array<Row, count>& table, const Counters& others, Counters& sums) {
   for (const Row& row : table) {

@@ -10,25 +10,28 @@
 
 /// Views not given as a camera: the default view and the named views.
 ///
-/// Up      z unless the caller states otherwise. Medical files state the anatomical axes: z points to the head in all
-///         of them.
-/// Default a little from the right and from above: 30 degrees about the vertical, 25 above the horizon. Flat data
-///         (lower than a fifth of both sides) are seen from 60 degrees above. The side towards the eye is the file's
-///         -y, or +x if the data are more than half again as deep as wide; for a patient always the face.
-/// Fit     the whole box is in the image, with a margin of 5 %.
+/// Up      z, unless the caller specifies another direction. Medical files state the anatomical axes; z points to the
+///         head in all of them.
+/// Default The eye is a little to the right and above: rotated by 30 degrees about the vertical and 25 degrees above
+/// the
+///         horizon. Flat data, whose height is less than a fifth of both sides, are seen from 60 degrees above the
+///         horizon. The side towards the eye is the file's -y, or +x if the data are more than 1.5 times as deep as
+///         wide; for a patient it is always the face.
+/// Fit     The whole box is in the image, with a margin of 5 %.
 namespace tessera {
 inline namespace v0_1 {
 
 /// The anatomical axes that a file states. z points to the head in both systems.
 enum class BodyAxes {
-  none,  ///< not stated: not a patient
+  none,  ///< not stated: the data are not those of a patient
   ras,   ///< x to the patient's right or left, y to the front: NIfTI, MINC, NRRD's RAS and LAS
   lps,   ///< y to the back: DICOM, NRRD's LPS, MetaImage with an AnatomicalOrientation
 };
 
-/// Named directions. For a patient (BodyAxes) `front`, `back`, `left` and `right` show that side of the body; left is
-/// the patient's left. For other data `front` looks along +y, `right` along -x and so on. `top` looks along -z, `iso`
-/// along (-1, 1, -1). The others look along an axis, whatever the data. Up in the image is z; in views along z it is y.
+/// Named view directions. For a patient (BodyAxes), `front`, `back`, `left` and `right` show the side of the body with
+/// this name; left is the patient's left. For other data, `front` looks along +y, `right` along -x and so on. For all
+/// data, `top` looks along -z and `iso` along (-1, 1, -1); the remaining views look along the axis in their names. The
+/// axis z points up in the image; in views along z the axis y does.
 enum class StandardView {
   automatic,
   front,
@@ -46,34 +49,37 @@ enum class StandardView {
   against_z
 };
 
-/// "front" ... "iso", or "+x", "-z": the axis of the view direction. Nothing for any other word.
+/// Returns the view of this name: "front" to "iso", or the axis along which it looks, like "+x" or "-z". Returns
+/// nothing for any other word.
 TESSERA_EXPORT std::optional<StandardView> standard_view(std::string_view word);
 
-/// The requested view. The defaults are those above.
+/// A requested view. The default values request the default view described at the top of this file.
 struct ViewRequest {
   StandardView view = StandardView::automatic;
   std::optional<glm::dvec3> up{};  ///< world direction that points up in the image, any length but zero
-  /// Degrees, as in vtkCamera: the eye moves about the up axis to the right, then upwards over the horizon, in this
-  /// order.
+  /// Rotations in degrees, as in vtkCamera: first the eye moves to the right about the up axis, then upwards over the
+  /// horizon.
   double azimuth = 0, elevation = 0;
-  double zoom = 1;   ///< magnification of the middle of the image, > 0
-  bool fit = false;  ///< with a caller's camera: keep its directions, but frame the box
+  double zoom = 1;   ///< magnification about the centre of the image, > 0
+  bool fit = false;  ///< for a caller's camera: keeps its directions, but moves it so that it frames the box
 
   bool operator==(const ViewRequest&) const = default;
 };
 
-/// The requested view of this box. `turning`: wide enough for every turn of orbit(). Throws Error(bad_input) for an
-/// `up` of zero length or along the view, a number that is not finite, or a zoom that is not positive.
+/// Returns the requested view of the box. If `turning`, the view is wide enough for every turn of orbit(). Throws
+/// Error(bad_input) for an `up` of zero length or along the view, a number that is not finite, or a zoom that is not
+/// positive.
 TESSERA_EXPORT Camera view_of_box(const Box& box, ImageSize size, const ViewRequest& request = {},
                                   ProjectionKind projection = ProjectionKind::orthographic,
                                   BodyAxes axes = BodyAxes::none, bool turning = false);
 
-/// A caller's camera with azimuth, elevation, zoom and `fit` applied; the same bits if none is requested. Throws as
-/// above, and for a named view or an `up`, which the camera already has.
+/// Returns a caller's camera with azimuth, elevation, zoom and `fit` applied; without any of them, the camera is
+/// returned bit for bit. Throws the same errors as view_of_box(), and Error(bad_input) if the request has a named view
+/// or an `up`, because the camera already specifies these.
 TESSERA_EXPORT Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const ViewRequest& request);
 
-/// A view of the whole box: the eye is in direction `to_eye` from its centre, `up` points up; neither needs unit
-/// length. The whole box is in the image, with a margin of 5 %.
+/// Returns a view of the whole box, with a margin of 5 %. The eye is in direction `to_eye` from the centre of the box,
+/// and `up` points up in the image. The two vectors may have any length but zero.
 TESSERA_EXPORT Camera frame_box_along(const Box& box, ImageSize size, const glm::dvec3& to_eye, const glm::dvec3& up,
                                       ProjectionKind projection = ProjectionKind::orthographic, bool turning = false);
 

@@ -13,12 +13,12 @@ inline namespace v0_1 {
 /// What files of a format contain.
 enum class FileHolds : std::uint8_t {
   mesh,
-  surface,       ///< closed: it is filled with tets
+  surface,       ///< a closed surface, which is filled with tets
   grid,          ///< regular or rectilinear: a volume
-  grid_or_mesh,  ///< a grid, which Dataset::open can open as a mesh (ReadOptions::grid_as_mesh); in some formats
-                 ///< (NetCDF, XDMF) either, depending on the contents
+  grid_or_mesh,  ///< a grid, which Dataset::open() can also open as a mesh (ReadOptions::grid_as_mesh); files of NetCDF
+                 ///< and XDMF contain a grid or a mesh
   series,        ///< a list of files, one per time step (tessera/time_series.hpp)
-  not_read       ///< known, so that messages can name the format
+  not_read       ///< recognized only so that messages can name the format
 };
 
 /// One file format, from the table that the readers use.
@@ -27,8 +27,8 @@ struct FileFormat {
   std::vector<std::string> extensions;  ///< in lower case, with the dot; may be empty
   FileHolds holds = FileHolds::mesh;
   std::string remark;                  ///< conditions and limits; for formats that are not read, the reason
-  bool recognized_by_content = false;  ///< a wrong name does not matter
-  std::string left_out;  ///< the reader program that is not installed ("tessera-read-vtk"); empty if it is read
+  bool recognized_by_content = false;  ///< files are recognized even if the extension is wrong
+  std::string left_out;  ///< the missing reader program ("tessera-read-vtk"); empty if the format can be read
 };
 
 /// All formats; those that are not read come last.

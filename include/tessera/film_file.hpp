@@ -13,7 +13,7 @@ namespace tessera {
 inline namespace v0_1 {
 
 struct FilmFileOptions {
-  ImageFileOptions image;         ///< background and encode_srgb apply: films have 8 bits and no alpha
+  ImageFileOptions image;         ///< only background and encode_srgb are used; films have 8 bits and no alpha
   double frames_per_second = 25;  ///< least_film_rate to most_film_rate
 };
 
@@ -28,23 +28,25 @@ TESSERA_EXPORT bool is_film_name(const std::filesystem::path& file);
 TESSERA_EXPORT void check_film_file(const std::filesystem::path& file);
 
 /// A film that the program `ffmpeg` encodes from a sequence of images: H.264 (.mp4 .mov .mkv), VP9 (.webm), or a .gif
-/// of 256 colours. Without a background the images are on black. Sides are made even, as these encoders require, by one
-/// more line of the background. The file appears whole, by commit(), or not at all, even if the process is killed.
+/// of 256 colours. Without a background the images are on black. The encoders require even numbers of pixels: an odd
+/// side gets one more line, in the colour of the background. commit() makes the complete file appear. Without commit()
+/// no file appears, even if the process is killed.
 class TESSERA_EXPORT FilmFile {
  public:
-  /// Starts ffmpeg. `size` is that of every image. Throws as check_film_file(), Error(system_failure) if it does not
-  /// start.
+  /// Starts ffmpeg. `size` is the size of every image. Throws the same errors as check_film_file(), and
+  /// Error(system_failure) if ffmpeg does not start.
   FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOptions& options);
   ~FilmFile();
   FilmFile(const FilmFile&) = delete;
   FilmFile& operator=(const FilmFile&) = delete;
 
-  /// Throws Error(bad_input) for an image of another size, Error(system_failure) with ffmpeg's last line of output if
-  /// it has ended, and as write_image() for values that are not finite.
+  /// Appends an image. Throws Error(bad_input) for an image of another size; Error(system_failure), with the last line
+  /// of ffmpeg's output, if ffmpeg has ended; and the errors of write_image() for values that are not finite.
   void add(const Image& image);
-  /// Throws Error(system_failure) as add().
+  /// Completes the film and makes the file appear. Throws Error(system_failure) if ffmpeg has failed.
   void commit();
-  /// Instead of commit(): returns the contents of the film; no file appears. Throws Error(system_failure) as add().
+  /// Completes the film and returns its contents; no file appears. Used instead of commit(). Throws
+  /// Error(system_failure) if ffmpeg has failed.
   std::string take();
 
  private:

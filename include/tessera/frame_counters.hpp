@@ -10,7 +10,8 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Counters of one frame of a mesh. frame_counters is their table; docs/REFERENCE.md repeats the meanings.
+/// Counters of one frame of a mesh. The table frame_counters contains their names and meanings; docs/REFERENCE.md
+/// repeats them.
 struct FrameCounters {
   std::uint64_t tets_total = 0;
   std::uint64_t tets_invisible = 0;
@@ -32,7 +33,7 @@ struct FrameCounters {
   FrameCounters& operator+=(const FrameCounters& other);
 };
 
-/// Counters of one frame of a grid. grid_counters is their table.
+/// Counters of one frame of a grid. The table grid_counters contains their names and meanings.
 struct GridCounters {
   std::uint64_t rays = 0;
   std::uint64_t voxels_visited = 0;
@@ -61,7 +62,7 @@ struct GridCounters {
 using FrameCounter = Counter<FrameCounters>;
 using GridCounter = Counter<GridCounters>;
 
-/// All of them, in the order of reports. tets_total is the sum of the four counters that follow it.
+/// All counters of meshes, in the order of reports. tets_total is the sum of the four counters that follow it.
 inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"tets_total", &FrameCounters::tets_total, FrameCounter::Together::sum, false, "tetrahedra of the mesh"},
     {"tets_invisible", &FrameCounters::tets_invisible, FrameCounter::Together::sum, false,
@@ -92,8 +93,8 @@ inline constexpr std::array<FrameCounter, 16> frame_counters{{
      "of the messages they went in, those to the same process included"},
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},
 }};
-/// All counters of grids, in the order of reports. Values that are the same on all processes are combined as the
-/// largest.
+/// All counters of grids, in the order of reports. Counters whose values are the same on all processes are combined by
+/// taking the largest value.
 inline constexpr std::array<GridCounter, 20> grid_counters{{
     {"rays", &GridCounters::rays, GridCounter::Together::sum, false, "rays that meet the volume"},
     {"voxels_visited", &GridCounters::voxels_visited, GridCounter::Together::sum, false,

@@ -17,23 +17,23 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How a sample is stored. Readers convert other types (64-bit integers, bits) to float64 or uint8.
+/// Type in which a sample is stored. Readers convert other types (64-bit integers, bits) to float64 or uint8.
 enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Bytes of one sample: 1, 2, 4 or 8.
 TESSERA_EXPORT std::size_t size_of(SampleType type);
 /// "uint8", "float32", ...
 TESSERA_EXPORT const char* name_of(SampleType type);
-/// The type of that name (also float and double); none for an unknown name.
+/// Returns the type of this name; "float" and "double" are also names. Returns none for an unknown name.
 TESSERA_EXPORT std::optional<SampleType> sample_type_named(const std::string& name);
 TESSERA_EXPORT bool is_float(SampleType type);
 /// Whether single precision represents every number of the type.
 TESSERA_EXPORT bool fits_float(SampleType type);
 
-/// Numbers along the axes i, j, k; i is the fastest in memory and in files.
+/// Indices or counts along the axes i, j, k. The index i varies fastest in memory and in files.
 using GridIndex = std::array<std::int64_t, 3>;
 
-/// Samples low <= (i, j, k) < high. Empty if low >= high along an axis.
+/// The samples with low <= (i, j, k) < high. The box is empty if low >= high along any axis.
 struct SampleBox {
   GridIndex low{0, 0, 0}, high{0, 0, 0};
 
@@ -46,21 +46,25 @@ struct SampleBox {
 
 /// The position of the lattice of a regular or rectilinear grid.
 ///
-/// Frames  index: lattice numbers, (0, 0, 0) at the first lattice point, continuous between them.
+/// Frames  index: (0, 0, 0) is the first lattice point; lattice points have whole numbers, places between them
+///         fractions.
 ///         local: lengths along the grid's own axes. Regular: index * spacing. Rectilinear: coordinates[axis][index].
 ///         world: origin + direction * local.
-/// Data    point: a sample at every lattice point, trilinear between; the volume is the box between the first and the
-///         last of them. Cell: a sample for each voxel between lattice points, one fewer along each axis, constant in
-///         the voxel. For both, voxel (i, j, k) is between lattice points (i, j, k) and (i + 1, j + 1, k + 1).
-/// Units   world units of the file; int64 everywhere, so 2048^3 samples and more are addressable.
-/// Holds   (validate) at least two lattice points along each axis; spacing > 0; coordinates, if an axis has any, as
-///         many as lattice points, finite and strictly increasing; direction's columns of unit length, independent, of
-///         either handedness, not always orthogonal (NIfTI may shear); all finite.
+/// Data    Point data have a sample at every lattice point and are trilinear between lattice points. Cell data have a
+///         sample for each voxel, one fewer than lattice points along each axis, and are constant in the voxel. In both
+///         cases the volume is the box between the first and the last lattice point, and voxel (i, j, k) is between
+///         lattice points (i, j, k) and (i + 1, j + 1, k + 1).
+/// Units   Lengths are in the world units of the file. All indices are int64, so 2048^3 samples and more can be
+///         addressed.
+/// Holds   validate() checks: at least two lattice points along each axis; spacing > 0; if an axis has coordinates, one
+///         per lattice point, strictly increasing; the columns of `direction` have unit length and are linearly
+///         independent; all numbers are finite. The columns may have either handedness and need not be orthogonal
+///         (NIfTI may shear).
 struct GridGeometry {
   GridIndex points{0, 0, 0};  ///< lattice points along each axis
   Association association = Association::point;
-  glm::dvec3 origin{0};       ///< world, of local (0, 0, 0)
-  glm::dmat3 direction{1.0};  ///< column a: the grid's axis a in the world, of length one
+  glm::dvec3 origin{0};       ///< world position of local (0, 0, 0)
+  glm::dmat3 direction{1.0};  ///< column a: unit vector of the grid's axis a in the world
   glm::dvec3 spacing{1.0};    ///< world units between lattice points; unused along rectilinear axes
   std::array<std::vector<double>, 3> coordinates;  ///< rectilinear: local coordinates of lattice points; else empty
 
@@ -74,7 +78,7 @@ struct GridGeometry {
   [[nodiscard]] bool rectilinear(std::size_t axis) const { return !coordinates[axis].empty(); }
   [[nodiscard]] bool rectilinear() const { return rectilinear(0) || rectilinear(1) || rectilinear(2); }
 
-  /// Local coordinate of lattice point `index` along `axis`; always the same double for one point.
+  /// Local coordinate of lattice point `index` along `axis`. Every call returns the same double for the same point.
   [[nodiscard]] double lattice(std::size_t axis, std::int64_t index) const {
     return coordinates[axis].empty() ? spacing[static_cast<int>(axis)] * static_cast<double>(index)
                                      : coordinates[axis][static_cast<std::size_t>(index)];
@@ -83,38 +87,39 @@ struct GridGeometry {
   bool operator==(const GridGeometry&) const = default;
 };
 
-/// World position of a continuous lattice index. Outside the lattice the first and last spacing continue.
+/// World position of a continuous lattice index. Outside the lattice, the first and the last spacing are continued.
 TESSERA_EXPORT glm::dvec3 world_of_index(const GridGeometry& geometry, const glm::dvec3& index);
-/// The inverse.
+/// The inverse of world_of_index().
 TESSERA_EXPORT glm::dvec3 index_of_world(const GridGeometry& geometry, const glm::dvec3& p_world);
 /// Inverse of `direction`: local = world_to_local * (world - origin).
 TESSERA_EXPORT glm::dmat3 world_to_local(const GridGeometry& geometry);
 
-/// World box round the volume's eight corners.
+/// World box that contains the eight corners of the volume.
 TESSERA_EXPORT Box bounds(const GridGeometry& geometry);
 
-/// Volume over the largest face of bounds(): comparable to scene::mean_thickness of the same matter as a mesh. World
-/// units.
+/// The grid's volume divided by the area of the largest face of bounds(), in world units. The value is comparable to
+/// scene::mean_thickness() of a mesh of the same object.
 TESSERA_EXPORT double mean_thickness(const GridGeometry& geometry);
 
-/// A volume without its samples: what every reader provides and every renderer needs first.
+/// The description of a volume, without its samples. Every reader provides it, and every renderer needs it first.
 ///
-/// Value   of the field = scale * sample + shift (NIfTI's slope and intercept); transfer functions, ranges and images
-///         refer to the value. Both are finite, scale is not zero. Trilinear interpolation commutes with the
-///         conversion.
-/// Blank   a sample that is NaN or infinite. A voxel with a blank corner (cell data: with a blank sample) is not part
-///         of the volume: it neither absorbs nor emits. Readers convert integer files with blanks (ghost arrays) to a
-///         float type with NaN.
+/// Value   The field's value is scale * sample + shift (NIfTI's slope and intercept). Transfer functions, ranges and
+///         images refer to the value. `scale` and `shift` are finite, and `scale` is not zero. Trilinear interpolation
+///         commutes with the conversion.
+/// Blank   A sample that is NaN or infinite is blank. A voxel with a blank corner or, for cell data, a blank sample is
+///         not part of the volume: it neither absorbs nor emits light. Readers convert integer files with blanks (ghost
+///         arrays) to a float type with NaN.
 struct Grid {
   GridGeometry geometry;
   SampleType type = SampleType::float32;  ///< as stored
   double scale = 1, shift = 0;
-  std::string field_name{};  ///< as chosen, with component: "Velocity:mag"
+  std::string field_name{};  ///< name of the chosen field, with its component: "Velocity:mag"
 
   [[nodiscard]] double value(double sample) const { return scale * sample + shift; }
 };
 
-/// Throws Error(bad_input, "SOURCE: ...") if the invariants above are broken: what is wrong and along which axis.
+/// Throws Error(bad_input) if the invariants of Grid or GridGeometry do not hold. The message begins with `source` and
+/// states what is wrong and along which axis.
 TESSERA_EXPORT void validate(const Grid& grid, const std::string& source);
 
 }  // namespace v0_1

@@ -12,7 +12,7 @@ inline namespace v0_1 {
 
 /// A finished image. Row-major, row 0 at the top.
 /// `rgba`: 4 floats per pixel, linear RGB premultiplied by A; A = 1 - transmittance.
-/// `depth`: planar depth of the first visible sample (A > 0) along the view direction, world units; +inf where nothing
+/// `depth`: planar depth along the view direction of the first visible sample (A > 0), world units; +inf where nothing
 /// is visible.
 struct Image {
   ImageSize size{0, 0};

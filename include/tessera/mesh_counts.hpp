@@ -10,34 +10,37 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Counts of a mesh's cells and points by how they were handled. A cell is counted as read, then in at most one of
-/// ghost, hidden, nan, not_volumetric; the remaining cells are split into tets. mesh_counters is the table of these
-/// counters.
+/// Counts of a mesh's cells and points by how they were handled. Every cell is counted in cells_read and in at most one
+/// of cells_ghost, cells_hidden, cells_nan and cells_not_volumetric; the remaining cells are split into tets. The table
+/// mesh_counters contains the names and meanings of the counters.
 struct MeshCounts {
   std::uint64_t cells_read = 0;
-  std::uint64_t cells_ghost = 0;            ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
-  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, or a hidden point (2), IBLANK 0
-  std::uint64_t cells_nan = 0;              ///< blanked: a coordinate or scalar is missing, NaN or infinite
+  std::uint64_t cells_ghost = 0;            ///< dropped: belong to another piece (vtkGhostType bit 1, vtkGhostLevels >
+                                            ///< 0)
+  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, a hidden point (bit 2), or IBLANK 0
+  std::uint64_t cells_nan = 0;              ///< dropped: a coordinate or scalar is missing, NaN or infinite
   std::uint64_t cells_not_volumetric = 0;   ///< skipped: points, lines, faces
   std::uint64_t cells_zero_volume = 0;      ///< kept: all their tets have exactly zero volume
   std::uint64_t cells_open = 0;             ///< dropped: polyhedra whose faces do not form a closed surface
   std::uint64_t cells_tangled = 0;          ///< kept: their tets differ in orientation, so they overlap
   std::uint64_t cells_quadratic = 0;        ///< kept: second or higher order (HigherOrderCells)
   std::uint64_t cells_polyhedra = 0;        ///< kept: polyhedra and convex point sets
-  std::uint64_t polyhedra_from_inside = 0;  ///< of these: split from a point that was added inside
-  std::uint64_t polyhedra_in_pieces = 0;    ///< of these: cut into tets one by one, as no point sees the whole inside
-  std::uint64_t polyhedra_tangled = 0;      ///< of these: also counted in cells_tangled
-  /// Kept: an earlier cell has the same corners, and both are drawn.
+  std::uint64_t polyhedra_from_inside = 0;  ///< polyhedra split from a point that was added inside
+  std::uint64_t polyhedra_in_pieces = 0;    ///< polyhedra cut into tets one by one, because the whole inside is visible
+                                            ///< from no single point
+  std::uint64_t polyhedra_tangled = 0;      ///< polyhedra that are also counted in cells_tangled
+  /// Kept: cells that have the corners of an earlier cell; both are drawn.
   std::uint64_t cells_duplicate = 0;
   std::uint64_t duplicates_dropped = 0;  ///< duplicate cells that were dropped (ReadOptions::drop_duplicates)
-  /// Kept cells of these kinds (prisms with five or six sides), and how many of them are among cells_tangled.
+  /// Numbers of kept cells of these kinds, and how many of them are counted in cells_tangled. Prisms have five or six
+  /// sides.
   std::uint64_t hexahedra = 0, hexahedra_tangled = 0, wedges = 0, wedges_tangled = 0, pyramids = 0,
                 pyramids_tangled = 0, voxels = 0, voxels_tangled = 0, prisms = 0, prisms_tangled = 0;
   std::uint64_t points_read = 0;
   std::uint64_t points_unused = 0;   ///< used by no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
-  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners have the same position
-  // By ReadOptions::selection, counting only cells that are otherwise kept:
+  std::uint64_t tets_collapsed = 0;  ///< not made, because two of their corners have the same position
+  // Effects of ReadOptions::selection on the cells that are otherwise kept:
   std::uint64_t cells_out_of_range = 0;  ///< dropped: their values are not all within the threshold
   std::uint64_t cells_clipped = 0;       ///< dropped: completely clipped away
   std::uint64_t cells_cut = 0;           ///< kept in part
@@ -46,11 +49,12 @@ struct MeshCounts {
   bool operator==(const MeshCounts&) const = default;
 };
 
-/// A name's prefix before a slash is a group, which reports omit if all its counters are 0 (Counter::if_any). Reports
-/// omit counters without a name. `meaning` follows the number in the program's line about cells.
+/// A row of the table of MeshCounts. If a name contains a slash, the part before the slash is the name of a group;
+/// reports omit a group with `if_any` if all its counters are 0. Reports also omit counters without a name. In the line
+/// about cells that the program prints, `meaning` follows the number.
 struct MeshCounter : Counter<MeshCounts> {
   enum class Fate {
-    other,  ///< not in that line
+    other,  ///< not in the line about cells
     kept,
     dropped  ///< read, but not in the mesh
   };
@@ -129,14 +133,17 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   return *this;
 }
 
-/// Counts and errors of a mesh's cells of second and higher order.
+/// Counts and errors of the mesh's cells of second and higher order.
 struct HigherOrderCells {
   std::uint64_t divided = 0;     ///< divided into tets within the errors below
-  std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, as their kind is not divided: no bound
+  std::uint64_t by_corners = 0;  ///< drawn as linear cells between their corners, because their kind is not divided;
+                                 ///< without an error bound
   std::uint64_t tets = 0;        ///< made from the divided cells
-  double tolerance = 0;          ///< as requested or, if that took too many tets, the larger value used instead
-  double position_error = 0;     ///< largest distance of a point of a tet from its place in the cell, world units
-  double field_error = 0;        ///< largest error of the field at one place, in its unit; to first order
+  double tolerance = 0;          ///< the requested tolerance or, if it required too many tets, the larger one that was
+                                 ///< used
+  double position_error = 0;     ///< largest distance of a point of a tet from its exact place in the cell, world units
+  double field_error = 0;        ///< largest error of the field at any place, in the field's unit; estimated to first
+                                 ///< order
 
   HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< adds those of another part
   bool operator==(const HigherOrderCells&) const = default;

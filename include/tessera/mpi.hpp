@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The only public header that needs MPI (component `mpi` of the package).
+// No other public header requires MPI. Programs that include it use the package's component `mpi`.
 #include <mpi.h>
 
 #include "tessera/communicator.hpp"
@@ -9,8 +9,8 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The processes of an MPI communicator, which must stay valid for the lifetime of everything made with it. MPI must
-/// have been started with MPI_THREAD_MULTIPLE (tessera/communicator.hpp).
+/// Returns a Communicator of the processes of an MPI communicator. The MPI communicator must stay valid as long as any
+/// object made with the result exists. MPI must have been started with MPI_THREAD_MULTIPLE (tessera/communicator.hpp).
 inline Communicator communicator(MPI_Comm mpi) { return Communicator::of_handle(static_cast<int>(MPI_Comm_c2f(mpi))); }
 
 }  // namespace v0_1

@@ -14,8 +14,8 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Smallest and largest value (scale and shift applied) of the samples that are not blank; empty if low > high. With
-/// the number of blank samples.
+/// The smallest and the largest value (scale and shift applied) of the samples that are not blank, and the number of
+/// blank samples. The range is empty if low > high.
 struct ValueRange {
   double low = 1e300, high = -1e300;
   std::uint64_t blanks = 0;
@@ -24,19 +24,20 @@ struct ValueRange {
   bool operator==(const ValueRange&) const = default;
 };
 
-/// How read() lays out samples: i fastest; `row_pitch` samples from one row (j) to the next, `slice_pitch` from one
-/// slice (k) to the next. Zero: contiguous, that is box.extent(0) and row_pitch * box.extent(1).
+/// How read() arranges samples in memory: i varies fastest; rows (j) are `row_pitch` samples apart and slices (k) are
+/// `slice_pitch` samples apart. A pitch of zero makes them contiguous: box.extent(0) for rows, row_pitch *
+/// box.extent(1) for slices.
 struct SampleLayout {
   SampleType type = SampleType::float32;
   std::int64_t row_pitch = 0, slice_pitch = 0;
 };
 
-/// The source of a volume's samples: memory, a mapped file, a brick file. One number per sample; the component or
-/// magnitude of a vector was chosen when the source was made.
+/// The source of a volume's samples: memory, a mapped file or a brick file. A sample is one number; for vectors, the
+/// component or the magnitude was chosen when the source was made.
 ///
-/// All functions are const and may be called from several threads at once. A source never holds more memory than it was
-/// made with: the caller owns what read() returns. Callers may derive their own sources from this class: samples that
-/// are computed, or fetched where they are needed.
+/// All functions are const and may be called from several threads at once. The memory that a source uses does not grow:
+/// the caller owns the memory into which read() writes. Callers may derive their own sources from this class, for
+/// samples that are computed or fetched when they are needed.
 class TESSERA_EXPORT SampleSource {
  public:
   virtual ~SampleSource();
@@ -46,44 +47,46 @@ class TESSERA_EXPORT SampleSource {
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] const GridGeometry& geometry() const { return grid_.geometry; }
 
-  /// Writes the samples of `box` (scale and shift not applied) to `destination`, as stored or converted to float32
-  /// (rounded to nearest; infinite beyond its range, hence blank) or float64 (exact). The box is inside the volume;
-  /// elements between rows and slices are not changed. Throws Error(bad_input) for another type, a box not inside or a
-  /// destination too small; Error(system_failure) if the file can no longer be read.
+  /// Writes the samples of `box` (scale and shift not applied) to `destination`, in the stored type or converted to
+  /// float32 or float64. The conversion to float32 rounds to nearest; values beyond its range become infinite and
+  /// therefore blank. The conversion to float64 is exact. Elements between rows and slices are not changed. Throws
+  /// Error(bad_input) for another type, a box that is not inside the volume, or a destination that is too small;
+  /// Error(system_failure) if the file can no longer be read.
   void read(const SampleBox& box, const SampleLayout& layout, std::span<std::byte> destination) const;
 
-  /// The same, contiguous, for T the stored type, float or double.
+  /// Writes contiguous samples. T is the stored type, float or double.
   template <class T>
   void read(const SampleBox& box, std::span<T> destination) const;
 
-  /// Bounds of the values in a box and of the number of blanks, if they are known without reading samples (a brick file
-  /// stores them): never too narrow, perhaps too wide. For the box of all samples they are exact.
+  /// Returns bounds of the values and of the number of blank samples in a box, if they are known without reading
+  /// samples (a brick file stores them). The bounds may be too wide, but are never too narrow. For the box of all
+  /// samples they are exact.
   [[nodiscard]] virtual std::optional<ValueRange> known_range(const SampleBox& /*box*/) const { return std::nullopt; }
 
-  /// Boxes of this size, aligned to multiples of it, are the cheapest to read: a brick file's bricks, or whole slices
-  /// of a file in slice order.
+  /// Size of the boxes that are cheapest to read if they are aligned to multiples of it: the bricks of a brick file, or
+  /// whole slices of a file in slice order.
   [[nodiscard]] virtual GridIndex storage_block() const {
     const GridIndex n = geometry().samples();
     return {n[0], n[1], 1};
   }
 
-  /// Bytes of samples read from the file so far; 0 for memory.
+  /// Number of bytes of samples read from the file so far; 0 for samples in memory.
   [[nodiscard]] virtual std::uint64_t bytes_read() const { return 0; }
 
  protected:
-  /// Throws what validate() throws; `source` is the file's name in messages.
+  /// Throws the same errors as validate(). `source` is the name of the file in messages.
   SampleSource(Grid grid, std::string source);
   [[nodiscard]] const std::string& source_name() const { return source_; }
 
  private:
-  /// Arguments that read() has checked; pitches are no longer zero.
+  /// Called by read() after it has checked the arguments and replaced pitches of zero.
   virtual void read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const = 0;
 
   Grid grid_;
   std::string source_;
 };
 
-/// The type in which a C++ number is stored.
+/// The SampleType of a C++ number type.
 template <class T>
 constexpr SampleType sample_type_of();
 

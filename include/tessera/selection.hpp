@@ -12,36 +12,38 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// All points p with dot(p - point, normal) >= 0: the plane through `point` and the side to which the normal points.
-/// World units; the normal may have any length but 0.
+/// All points p with dot(p - point, normal) >= 0: the plane through `point` and the half of space into which `normal`
+/// points. World units. The normal may have any length but 0.
 struct HalfSpace {
   glm::dvec3 point{0}, normal{0, 0, 1};
   bool operator==(const HalfSpace&) const = default;
 };
 
-/// The inside of a box as six half-spaces.
+/// Returns the six half-spaces whose intersection is the box.
 TESSERA_EXPORT std::array<HalfSpace, 6> half_spaces_of(const Box& box);
 
-/// The part of a data set to keep. First whole cells are kept by their values, then the parts of them inside all
-/// half-spaces.
+/// The part of a data set to keep: first the cells whose values are within the threshold, then the parts of these cells
+/// inside all half-spaces.
 ///
-/// Threshold  keeps cells of the file (voxels of grids), whatever tets are made from them. A cell with cell data is
-///            kept if its value is in the closed range, one with point data if the values of all its points are (for
-///            cells of higher order: at the corners of the tets into which they are divided).
-/// Clip       cells are cut exactly: a tet that a plane crosses becomes up to three, whose new corners have the value
-///            of the linear field there. Cells that share a face cut it the same way, whatever piece of a file or rank
-///            they are on, because a cut edge is always divided starting from its end that comes first by position, and
-///            the remaining part is split as wedges and pyramids of files are. Corners within the rounding error of
-///            their distance to a plane count as on it, so that planes through vertices leave no splinters. New corners
-///            whose value equals one of `levels` up to rounding (1e-12 relative) get it exactly: an iso-surface that
-///            coincides with a plane is visible over the whole cut if the remaining part is below its value, and
-///            nowhere if it is above. In grids this holds for all values (to 1e-10).
-/// Grids      Samples outside the threshold's range are blank, so voxels that have one are left out. Rays are cut where
-///            they meet a plane; the bounds are those of the remaining part, and a plane does not change the range.
+/// Threshold  Whole cells of the file (voxels of grids) are kept, not single tets. A cell with cell data is kept if its
+///            value is in the closed range. A cell with point data is kept if the values of all its points are in the
+///            range; for cells of higher order these are the corners of the tets into which they are divided.
+/// Clip       Cells are cut exactly: a tet that a plane crosses is replaced by up to three tets, whose new corners have
+///            the value of the linear field at their position. Two cells that share a face cut it in the same way, even
+///            if they are in different pieces of a file or on different ranks, because a cut edge is always divided
+///            starting from the end that comes first by position, and the remaining part is split like wedges and
+///            pyramids of files. Corners whose distance to a plane is within its rounding error are treated as on the
+///            plane, so that planes through vertices leave no splinters. New corners whose value equals one of `levels`
+///            up to rounding (1e-12 relative) get this value exactly. An iso-surface that coincides with a plane is
+///            therefore visible on the whole cut if the remaining part is below the level, and nowhere if it is above.
+///            In grids this is true for all values (to 1e-10).
+/// Grids      Samples outside the threshold's range are blank, so voxels with such a sample are left out. Rays are cut
+///            where they meet a plane. The bounds are those of the remaining part. A plane does not change the range of
+///            values.
 struct Selection {
   std::vector<HalfSpace> clip;
   std::optional<std::array<double, 2>> threshold{};
-  std::vector<double> levels{};  ///< values of iso-surfaces, which new corners on planes reproduce exactly
+  std::vector<double> levels{};  ///< values of iso-surfaces, which the new corners on planes reproduce exactly
 
   [[nodiscard]] bool all() const { return clip.empty() && !threshold; }
   bool operator==(const Selection&) const = default;

@@ -14,28 +14,31 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A finished frame, or one that was stopped.
+/// A frame that was completed or stopped.
 struct RenderedFrame {
-  std::size_t number = 0;      ///< in the list of views
-  bool stopped = false;        ///< the image lacks pixels; nothing else is set
-  Image image;                 ///< on the rank that assembles; empty on others
+  std::size_t number = 0;      ///< number of the frame in the list of views
+  bool stopped = false;        ///< rendering was stopped: the image is incomplete, and no other member but `number` is
+                               ///< set
+  Image image;                 ///< on the rank that assembles; empty on other ranks
   DeepImage deep;              ///< if FrameSettings::deep
   FrameStatistics statistics;  ///< on the rank that assembles
-  /// With FrameSettings::keep_uncertainty, for grids: possible error of single precision by pixel, in linear RGBA.
+  /// With FrameSettings::keep_uncertainty, for grids: for each pixel the possible error due to single precision, in
+  /// linear RGBA.
   std::vector<float> uncertainty;
-  /// With FrameSettings::peel: Peel::layers images. Each contains a ray's light between two cuts, without attenuation
-  /// by anything in front, starting at the eye; composited front to back they equal the image. `depth` is where a
-  /// layer's light begins, infinite where a layer has none, as beyond a ray's end. Each layer is correct to 1e-5. A
-  /// surface has no inside to cut: it ends the layer that reaches the threshold with it. With FrameSettings::deep the
-  /// samples of the deep image are the layers: their density is not constant, so cutting them is not exact.
+  /// With FrameSettings::peel: Peel::layers images. Each layer contains the light between two cuts of the rays, without
+  /// attenuation by anything in front. The first layer starts at the eye. Composited front to back, the layers equal
+  /// the image. `depth` is the depth where the layer's light begins; it is infinite where the layer is empty, as beyond
+  /// the end of a ray. Each layer is correct to 1e-5. Surfaces cannot be cut: a surface with which a layer reaches the
+  /// threshold is the end of that layer. With FrameSettings::deep, the samples of the deep image are the layers. Their
+  /// density is not constant, so that cutting them is not exact.
   std::vector<Image> layers{};
-  std::optional<Peel> peel{};  ///< how the layers were cut; none: there are no layers
+  std::optional<Peel> peel{};  ///< how the layers were cut; none if there are no layers
 };
 
 /// Pixels of a frame that have their final values.
 struct Tile {
-  std::size_t frame;   ///< in the list of views; with several frames in flight not always the first
-  PixelRect rect;      ///< every pixel of a frame is in one tile
+  std::size_t frame;   ///< number of the frame in the list of views; tiles of several frames may alternate
+  PixelRect rect;      ///< the pixels of the tile; every pixel of a frame is in exactly one tile
   const Image& image;  ///< the whole image; pixels outside finished tiles are undefined
 };
 
@@ -51,11 +54,12 @@ class Sink {
   /// Whether tile() should be called at all.
   [[nodiscard]] virtual bool wants_tiles() const { return true; }
   virtual void tile(const Tile& /*tile*/) {}
-  /// For a list of frames: called with each complete frame, in order; the last one may be stopped, on every rank.
+  /// Called, when a list of frames is rendered, with each complete frame, in order. The last frame may be a stopped
+  /// one, on every rank.
   virtual void frame(RenderedFrame&& /*frame*/) {}
-  /// Called before the first pixel of a mesh's frame on several ranks: returns an image that the sink no longer needs,
-  /// whose memory the frame reuses whatever it contains, as fresh memory is slow to fill. An image of another size is
-  /// ignored; the default returns none.
+  /// Returns an image that the sink no longer needs. Called before the first pixel of a frame of a mesh on several
+  /// ranks, which reuses the memory of the image, since new memory is slow to fill. The contents of the image do not
+  /// matter. An image of another size is ignored. The default implementation returns an empty image.
   virtual Image spare_image(ImageSize /*size*/) { return {}; }
 };
 

@@ -15,26 +15,28 @@ inline namespace v0_1 {
 
 /// The instruction set that this process's kernels use.
 TESSERA_EXPORT std::string instruction_set();
-/// The number of threads for a setting of `asked`; 0: all cores.
+/// Returns the number of threads that are used if `asked` are requested; 0 requests one for each core.
 TESSERA_EXPORT int threads_for(int asked);
 
 /// Statistics of one frame, for all ranks together.
 struct FrameStatistics {
-  FrameCounters mesh;           ///< zero for grids
-  GridCounters grid;            ///< zero for meshes
-  bool on_lattice = false;      ///< meshes: the integer lattice was precise enough; false: double precision
-  std::string instruction_set;  ///< of the kernels that ran
-  std::string integrator;       ///< chosen by `automatic`
-  std::string composited_on;    ///< meshes on several ranks, or on a device
-  bool overlapping = false;     ///< meshes: cells of several ranks overlap, so Exchange::segments replaced runs
-  double milliseconds = 0;      ///< from when all ranks were ready to the image in memory
-  /// Grids, for each rank: its rectangle of the image (vertical edges may step by 4 pixels), pieces, CPU seconds.
+  FrameCounters mesh;           ///< counters of a mesh; zero for grids
+  GridCounters grid;            ///< counters of a grid; zero for meshes
+  bool on_lattice = false;      ///< meshes: true if the integer lattice was precise enough; false: double precision was
+                                ///< used
+  std::string instruction_set;  ///< the instruction set of the kernels that ran
+  std::string integrator;       ///< the integrator chosen by `automatic`
+  std::string composited_on;    ///< where a mesh was composited, on several ranks or on a device
+  bool overlapping = false;     ///< meshes: cells of several ranks overlap, so that segments were sent instead of runs
+  double milliseconds = 0;      ///< time from when all ranks were ready until the image was in memory
+  /// Grids, for each rank: its rectangle of the image (vertical edges may step by 4 pixels), number of integrated
+  /// pieces or samples, CPU seconds.
   std::vector<PixelRect> rectangles;
   std::vector<std::uint64_t> samples;
   std::vector<double> cpu_seconds;
-  std::vector<double> split_cpu_seconds;  ///< the same for finding the rectangles: cost map, pilot pass
-  std::vector<GridCounters> ranks;        ///< the counters from which `grid` is combined
-  /// Sort-last, for each rank: its voxels, from the first index to one past the last.
+  std::vector<double> split_cpu_seconds;  ///< CPU seconds for finding the rectangles: cost map and pilot rays
+  std::vector<GridCounters> ranks;        ///< the counters of each rank, from which `grid` is computed
+  /// With sort-last, for each rank: its voxels, given by the first index and one past the last index.
   std::vector<std::array<std::array<std::int64_t, 3>, 2>> parts;
 };
 

@@ -10,13 +10,14 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Whether an image meets its method's promised error, checked on some of its pixels. Errors are absolute differences
-/// in linear premultiplied RGBA from the double-precision reference.
+/// The result of checking on some pixels whether an image meets the promised error of its method. Errors are absolute
+/// differences from the double-precision reference, in linear premultiplied RGBA.
 ///
-/// Excused  a pixel over the bound whose value is within the reference's range over rays within 1/1024 pixel of its
-///          centre: the image is discontinuous there (docs/ACCURACY.md).
+/// Excused  The image is discontinuous at some pixels (docs/ACCURACY.md). A pixel whose error is above the bound is
+///          excused if its value is within the range of the reference's results for rays within 1/1024 pixel of the
+///          pixel's centre.
 struct Verification {
-  /// Result for the pixels chosen for one reason.
+  /// Result for the pixels that were chosen for one reason.
   struct Tally {
     std::string reason;  ///< "random", "edge", "step", "tie", ...
     std::size_t pixels = 0;
@@ -26,18 +27,20 @@ struct Verification {
 
   std::size_t pixels_checked = 0, over_bound = 0, excused = 0;
   double max_error = 0, max_error_not_excused = 0;
-  double rms_error = 0;  ///< of the pixels chosen at random: an estimate for the image
+  double rms_error = 0;  ///< root mean square error of the pixels chosen at random, an estimate for the whole image
   int worst_x = 0, worst_y = 0;
   std::array<float, 4> worst_value{};
   std::array<double, 4> worst_reference{};
   std::string worst_reason;       ///< why the worst pixel was chosen
-  std::vector<Tally> tallies;     ///< the random ones first
-  std::optional<double> bound{};  ///< none: errors are reported, but nothing is promised
-  /// For an image in layers, one each starting at the eye: the same pixels, against `layer_bound`.
+  std::vector<Tally> tallies;     ///< the tally of the random pixels is first
+  std::optional<double> bound{};  ///< the promised error; none: errors are only reported
+  /// For an image in layers: one tally per layer, the first for the layer at the eye. The same pixels of each layer are
+  /// compared with `layer_bound`.
   std::vector<Tally> layers{};
   double layer_bound = 0;
   bool layers_met = true;
-  /// No pixel is over the bound except excused ones, and these are few; the same for layers.
+  /// Whether no pixel has an error above the bound except excused pixels, and these are few. For layers the same is
+  /// required.
   bool met = true;
 };
 

@@ -20,22 +20,24 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-/// Reads one view, or the list of views of a camera path; the list is never empty. JSON, ParaView's .pvcc or plain text
-/// (docs/FORMATS.md). Throws Error(bad_input) in one line naming file and line.
+/// Reads one view, or the views of a camera path, from a file in JSON, ParaView's .pvcc or plain text
+/// (docs/FORMATS.md). The result is never empty. Throws Error(bad_input), with a message of one line that states the
+/// file and the line.
 TESSERA_EXPORT std::vector<CameraFile> read_cameras(const std::filesystem::path& file);
 
-/// The same for a file's text. `name` replaces the file's name in messages.
+/// Does the same for the text of a file. `name` replaces the name of the file in messages.
 TESSERA_EXPORT std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& name);
 
-/// Whether an argument is JSON text instead of a file's name: it begins with `{` or `[`. A file with such a name is
-/// given as `./{...`.
+/// Whether an argument is JSON text instead of the name of a file: text that begins with `{` or `[`. A file whose name
+/// begins with one of these is given as `./{...`.
 TESSERA_EXPORT bool is_json_text(std::string_view file_or_json);
-/// read_cameras() for a file, or parse_cameras() for JSON text, which messages call `camera`.
+/// Calls parse_cameras() for JSON text, with the name `camera` for messages, and read_cameras() for the name of a file.
 TESSERA_EXPORT std::vector<CameraFile> cameras_of(const std::string& file_or_json);
 
-/// Writes one view as JSON, every double in the shortest form that reads back the same. The file appears by rename.
+/// Writes one view as JSON, with every double in the shortest form that reads back the same. The file appears by
+/// rename.
 TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem::path& file);
-/// The text that write_camera writes.
+/// Returns the text that write_camera() writes.
 TESSERA_EXPORT std::string camera_json(const CameraFile& camera);
 
 }  // namespace v0_1

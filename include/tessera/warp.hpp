@@ -6,10 +6,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How the points of a mesh are moved, by a vector that its file has for each of them.
+/// How the points of a mesh are moved: each by a vector of the file, multiplied by a factor.
 struct Warp {
-  std::string vector{};  ///< point data of three components; empty: no point is moved
-  double factor = 1;     ///< multiplies the vector; finite
+  std::string vector{};  ///< name of the point data with the vectors, three components; empty: points are not moved
+  double factor = 1;     ///< factor of the vectors, finite
 
   bool operator==(const Warp&) const = default;
 };

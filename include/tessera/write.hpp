@@ -11,15 +11,16 @@
 namespace tessera {
 inline namespace v0_1 {
 
-// All files appear by rename, complete or not at all.
+// All files are written under a temporary name and then renamed, so that they appear complete or not at all.
 
 /// Writes a mesh as tetrahedra with one scalar: .vtu (double, compressed) or .tets (float32). Throws Error(bad_input)
 /// for a grid, a part of a mesh, another extension, or data that .tets cannot represent; Error(system_failure) if it
 /// cannot be written.
 TESSERA_EXPORT void write_mesh(const Dataset& mesh, const std::filesystem::path& file);
-/// The same for tets in arrays, which need not be a data set.
+/// Does the same for tets in arrays, without a data set.
 TESSERA_EXPORT void write_mesh(const MeshArrays& mesh, const std::filesystem::path& file);
-/// Writes a mesh as a .pvtu and `pieces` .vtu files next to it, each tet in one of them, for ranks to read.
+/// Writes a mesh as a .pvtu and `pieces` .vtu files next to it, so that ranks can read separate files. Each tet is in
+/// exactly one of the .vtu files.
 TESSERA_EXPORT void write_mesh_pieces(const MeshArrays& mesh, const std::filesystem::path& file, int pieces,
                                       const Partition& partition = {});
 /// For use before reading: throws Error(bad_input) unless `input`, if not null, is a mesh's file, a mesh can be written
@@ -28,16 +29,17 @@ TESSERA_EXPORT void write_mesh_pieces(const MeshArrays& mesh, const std::filesys
 TESSERA_EXPORT void check_mesh_output(const std::filesystem::path& file, const InputFile* input,
                                       std::optional<int> pieces = std::nullopt);
 
-/// Writes a grid in the format of its extension, .vti .vtr .nrrd .raw .bricks, some slices at a time, so that it may be
-/// larger than memory. `block`: samples per side of a brick file's blocks. Throws Error(bad_input) for a mesh and for
-/// what the format cannot express (cell data in .nrrd and .raw, a rectilinear grid in all but .vtr and .bricks, a
-/// direction in .raw and .vtr); Error(system_failure) if it cannot be written.
+/// Writes a grid in the format of the file's extension: .vti .vtr .nrrd .raw .bricks. A few slices are written at a
+/// time, so that the grid may be larger than memory. `block` is the number of samples per side of the blocks of a brick
+/// file. Throws Error(bad_input) for a mesh and for properties that the format does not support: cell data in .nrrd and
+/// .raw, rectilinear grids in all formats but .vtr and .bricks, a direction in .raw and .vtr. Throws
+/// Error(system_failure) if the file cannot be written.
 TESSERA_EXPORT void write_grid(const Dataset& grid, const std::filesystem::path& file, int block = 64);
 TESSERA_EXPORT void write_grid(const SampleSource& grid, const std::filesystem::path& file, int block = 64);
-/// Whether write_grid knows the extension.
+/// Whether write_grid() supports the extension.
 TESSERA_EXPORT bool is_grid_output(const std::filesystem::path& file);
-/// The type of the samples that write_grid writes: the stored one, or if scale and shift must be applied float32 for
-/// float32 and for integers of up to 16 bits, otherwise float64.
+/// The type of the samples that write_grid() writes. It is the stored type, unless scale and shift must be applied:
+/// then it is float32 for stored float32 and for integers of up to 16 bits, and otherwise float64.
 TESSERA_EXPORT SampleType written_type(const Dataset& grid);
 
 }  // namespace v0_1

@@ -6,17 +6,18 @@
 #include "tessera/optical_model.hpp"
 #include "tessera/settings.hpp"
 
-/// Methods and exchanges as the command line and reports name them.
+/// Names of methods and exchanges, as in the command line and in reports.
 namespace tessera {
 inline namespace v0_1 {
 
-/// `auto`, `exact`, ...: as in --integrator, without the part after a colon. `runs`: as in --exchange.
+/// Return a name like `auto` or `exact`, as in --integrator without the part after a colon, or a name like `runs`, as
+/// in --exchange.
 const char* method_word(IntegratorKind kind);
 const char* exchange_word(Exchange exchange);
-/// `sampled:8`, `auto to 0.0001`, ...: for meshes.
+/// Describes an integrator for meshes: `sampled:8`, `auto to 0.0001`, ...
 std::string method_line(const Integrator& integrator);
 
-/// For grids: whether the method samples rays at its own step length.
+/// For grids: whether the integrator samples rays at steps of equal length.
 bool takes_steps(const Integrator& integrator);
 
 }  // namespace v0_1

@@ -9,10 +9,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The name that was probably meant by `word`: the one with the fewest edits, where an edit inserts, deletes or
-/// replaces a letter or swaps two neighbours. Case does not matter, and only the last part of a path need match. None
-/// if more than a third of the letters (at least one) would change, unless `word` begins exactly one name. The first of
-/// several equally near names.
+/// Returns the name that was probably meant by `word`: the name that requires the fewest edits, where an edit inserts,
+/// deletes or replaces a letter or swaps two adjacent letters. Case is ignored, and only the last part of a path needs
+/// to match. If several names require equally few edits, the first is returned. Returns none if more than a third of
+/// the letters (but more than one letter) would change, unless exactly one name begins with `word`.
 /// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors", CACM, 1964.
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names);
 

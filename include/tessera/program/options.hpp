@@ -16,15 +16,15 @@
 #include "tessera/camera.hpp"
 #include "tessera/state.hpp"
 
-/// The options of the program `tessera`, each one a row of one table (api/options/option_table.cpp). Command line,
-/// help, manual pages, completion, files of options, states of `tessera serve` and the names in messages are generated
-/// from it.
+/// The options of the program `tessera`. Each option is a row of a table (api/options/option_table.cpp), from which
+/// command line, help, manual pages, completion, files of options, states of `tessera serve` and the names in messages
+/// are generated.
 namespace tessera {
 inline namespace v0_1 {
 
 /// Properties of an option: a set of bits.
 enum class Trait : std::uint32_t {
-  // The commands that have it.
+  // The commands that have the option.
   render = 1u << 0,
   serve = 1u << 1,
   info = 1u << 2,
@@ -36,52 +36,56 @@ enum class Trait : std::uint32_t {
   presets = 1u << 8,
   help = 1u << 9,
   completion = 1u << 10,
-  // How it is written; without these `--name VALUE`, once.
+  // How the option is written. Without any of these traits: `--name VALUE`, at most once.
   flag = 1u << 11,        ///< without a value
   place = 1u << 12,       ///< without a value, or `--name=VALUE`
   list = 1u << 13,        ///< may be repeated
-  positional = 1u << 14,  ///< a word without a name before it; for a list, the remaining words
+  positional = 1u << 14,  ///< a word without the option's name; for a list, all remaining words
   required = 1u << 15,
-  basic = 1u << 16,  ///< shown by `--help`; others only by `--help-all`
-  // The data that it applies to; without these both.
+  basic = 1u << 16,  ///< shown by `--help`; all other options are shown only by `--help-all`
+  // The kind of data to which the option applies. Without any of these traits: both kinds.
   meshes = 1u << 17,
   volumes = 1u << 18,
-  // Its form in a state of `tessera serve`, which is JSON; only the command line can set the server's other options.
-  state = 1u << 19,     ///< a client may set it, as text, true or a list of texts
-  camera = 1u << 20,    ///< also as an object with a camera
-  function = 1u << 21,  ///< also as an object with a transfer function, or a preset's name
-  surfaces = 1u << 22,  ///< also, if it names only files that the server was started with
-  // What it changes.
+  // The option's form in a state of `tessera serve`, which is JSON. Options of the server without any of these traits
+  // can only be set on the command line.
+  state = 1u << 19,     ///< a client may set the option, as text, true or a list of texts
+  camera = 1u << 20,    ///< the value may also be an object with a camera
+  function = 1u << 21,  ///< the value may also be an object with a transfer function, or a preset's name
+  surfaces = 1u << 22,  ///< the value may also contain names of files, but only of those with which the server was
+                        ///< started
+  // What the option changes.
   data = 1u << 23,        ///< what is read
   look = 1u << 24,        ///< the transfer function
-  knots = 1u << 25,       ///< also contained in the knots of a transfer function as JSON
+  knots = 1u << 25,       ///< also contained in the knots of a transfer function in JSON
   range = 1u << 26,       ///< also the range of values
   settings = 1u << 27,    ///< how the data are rendered
   view = 1u << 28,        ///< the view; a camera replaces it
   annotation = 1u << 29,  ///< what is drawn over the image
-  machine = 1u << 30,     ///< not the image, only the resources of rendering
+  machine = 1u << 30,     ///< only the resources for rendering, not the image
 };
 constexpr Trait operator|(Trait a, Trait b) {
   return static_cast<Trait>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 
 struct OptionRow {
-  std::string_view names;  ///< without dashes, separated by commas; an optional letter first, then the key
-  std::string_view value;  ///< placeholder for its value in help, like "WxH"; "a|b|c": one of these words
+  std::string_view names;  ///< names without dashes, separated by commas: an optional letter, then the key
+  std::string_view value;  ///< placeholder for the value in the help, like "WxH"; "a|b|c": the value is one of these
+                           ///< words
   Trait traits;
   std::string_view help;
 
-  /// Whether it has one of these traits.
+  /// Whether the option has at least one of these traits.
   [[nodiscard]] constexpr bool is(Trait trait) const {
     return (static_cast<std::uint32_t>(traits) & static_cast<std::uint32_t>(trait)) != 0;
   }
-  /// The name in states, files of options and OptionWords.
+  /// The option's name in states, files of options and OptionWords.
   [[nodiscard]] constexpr std::string_view key() const {
     const std::string_view longer = names.find(',') == 1 ? names.substr(2) : names;
     return longer.substr(0, longer.find(','));
   }
   [[nodiscard]] bool has_name(std::string_view name) const;
-  /// The words between the bars of `value`; empty if some are placeholders, with capitals, colons or brackets.
+  /// The words between the bars of `value`. Empty if some of them are placeholders, which contain capitals, colons or
+  /// brackets.
   [[nodiscard]] std::vector<std::string_view> choices() const;
 };
 
@@ -92,43 +96,43 @@ struct OptionTopic {
 };
 std::span<const OptionTopic> option_topics();
 
-/// All rows with one of these traits, in the order of the help.
+/// All rows with at least one of these traits, in the order of the help.
 std::vector<const OptionRow*> option_rows(Trait traits);
 
-/// The option of this name that `commands` have; null: none.
+/// Returns the option of this name of one of the `commands`; null if there is none.
 const OptionRow* find_option(Trait commands, std::string_view name);
 
-/// `text` with the name of every setting replaced by its option: `tile_size`, in backquotes, becomes --tile-size.
-/// Libraries name settings, the program has options: "raise `memory`" in a message becomes "raise --memory". Replaces
-/// only names of options that are whole words, as file names may contain backquotes. (A file named `memory`, with
-/// backquotes and without a directory, is mistaken for the setting.)
+/// Returns `text` with the name of every setting replaced by its option: `tile_size`, in backquotes, becomes
+/// --tile-size. The messages of libraries contain names of settings, but users of the program know its options: "raise
+/// `memory`" becomes "raise --memory". Only names of options that are whole words are replaced, because file names may
+/// contain backquotes. (The name of a file `memory`, with backquotes and without a directory, is replaced by mistake.)
 std::string with_options(std::string_view text);
 std::vector<std::string> with_options(const std::vector<std::string>& notes);
 
-/// The words given for the options of a command. Names are keys of its rows.
+/// The words given for the options of a command. The `name` of an option is the key of its row.
 ///
 /// The functions that return values throw Error(bad_input), which names the option, its value and the allowed values.
 /// They return none if the option is not given.
 class OptionWords {
  public:
-  OptionWords() = default;  ///< for `render`
+  OptionWords() = default;  ///< the words of the command `render`
   explicit OptionWords(Trait command) : command_(command) {}
   explicit OptionWords(const State& state) : words_(state.words()) {}
 
   [[nodiscard]] bool given(std::string_view name) const { return !words(name).empty(); }
   [[nodiscard]] bool given_one_of(std::initializer_list<std::string_view> names) const;
-  /// The last word; empty if none is given.
+  /// The last word given for the option; empty if none is given.
   [[nodiscard]] const std::string& word(std::string_view name) const;
   [[nodiscard]] const std::vector<std::string>& words(std::string_view name) const;
-  /// Without values the option is removed. The value of a flag is "true".
+  /// Sets the values of an option. Without values, the option is removed. The value of a flag is "true".
   void set(std::string_view name, std::vector<std::string> values);
   void set(std::string_view name, std::string value) { set(name, std::vector{std::move(value)}); }
-  /// As `set`, unless the option is already given.
+  /// Sets the value of an option unless the option is already given.
   void set_default(std::string_view name, std::string value);
   void set_defaults(const State& state);
-  /// All options that are given, by key in alphabetical order.
+  /// All given options, in the alphabetical order of their keys.
   [[nodiscard]] const State::Words& all() const { return words_; }
-  /// For `render`; without --config.
+  /// The state that the words describe, for `render`; does not contain --config.
   [[nodiscard]] State state() const;
 
   [[nodiscard]] std::optional<double> number(std::string_view name) const;
@@ -139,9 +143,9 @@ class OptionWords {
   [[nodiscard]] std::optional<ImageSize> size(std::string_view name) const;
   [[nodiscard]] std::optional<glm::dvec3> color(std::string_view name) const;
   [[nodiscard]] std::optional<glm::dvec3> vector(std::string_view name, bool positive = false) const;
-  /// Two numbers, the second larger, or equal if `may_be_equal`.
+  /// Two numbers; the second is larger than the first or, if `may_be_equal`, at least as large.
   [[nodiscard]] std::optional<std::array<double, 2>> interval(std::string_view name, bool may_be_equal = false) const;
-  /// The element of `values` at the index of the given word in the row's choices.
+  /// Returns the element of `values` whose index is that of the given word in the choices of the option's row.
   template <class T>
   [[nodiscard]] std::optional<T> choice(std::string_view name, std::initializer_list<T> values) const {
     const auto at = choice(name);
@@ -156,7 +160,8 @@ class OptionWords {
   State::Words words_;
 };
 
-/// All of `text` as a finite number, independent of the locale. Throws Error(bad_input) with `option` as its subject.
+/// Converts the whole `text` to a finite number, independent of the locale. Throws Error(bad_input) with `option` as
+/// its subject.
 double parse_number(const std::string& option, const std::string& text);
 
 /// Assigns `value`, if there is one, to `target`.

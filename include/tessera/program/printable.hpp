@@ -7,9 +7,9 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Arbitrary text of a file in a form that can be shown: one line, with a blank for each control character (C0, C1 and
-/// DEL, which terminals may execute) and for each character that changes the direction of writing, and without its
-/// middle if it is longer than 4000 bytes. UTF-8 characters stay whole.
+/// Returns arbitrary text of a file in a form that can be shown, as one line. A blank replaces each control character
+/// (C0, C1 and DEL, which terminals may execute) and each character that changes the direction of writing. If the text
+/// is longer than 4000 bytes, its middle is left out. UTF-8 characters are not split.
 std::string printable(std::string_view text);
 
 }  // namespace v0_1

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <vector>
 
-/// Functions for ASCII text, independent of the locale: bytes of other alphabets are neither letters nor blanks and do
-/// not change.
+/// Functions for ASCII text, independent of the locale. Bytes that are not ASCII are neither letters nor blanks, and
+/// are not changed.
 namespace tessera {
 inline namespace v0_1 {
 
@@ -26,7 +26,7 @@ constexpr bool is_letter(char c) { return is_upper(c) || is_lower(c); }
 constexpr char upper_case(char c) { return is_lower(c) ? static_cast<char>(c - 'a' + 'A') : c; }
 constexpr char lower_case(char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// The value of a hexadecimal digit; -1 of other characters.
+/// The value of a hexadecimal digit; -1 for other characters.
 constexpr int hex_digit(char c) {
   if (is_digit(c)) return c - '0';
   const char letter = lower_case(c);
@@ -55,7 +55,7 @@ constexpr std::string_view trimmed(std::string_view text, std::string_view blank
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-/// The words between `blanks`.
+/// Splits `text` into the words between `blanks`.
 inline std::vector<std::string_view> split_words(std::string_view text, std::string_view blanks = ascii_blanks) {
   std::vector<std::string_view> words;
   while (!(text = trimmed(text, blanks)).empty()) {
@@ -65,7 +65,7 @@ inline std::vector<std::string_view> split_words(std::string_view text, std::str
   return words;
 }
 
-/// The number that is the whole word, in the C locale; a leading + is allowed.
+/// Converts the whole word to a number, in the C locale. A leading + is allowed. Returns none for any other word.
 template <class T>
 std::optional<T> number_of(std::string_view word) {
   if (word.starts_with('+') && !word.substr(1).starts_with('-')) word.remove_prefix(1);
