@@ -14,7 +14,7 @@ inline namespace v0_1 {
 /// How a Communicator exchanges messages.
 struct TESSERA_HIDDEN Communicator::State {
   int rank = 0, size = 1;
-  /// Returns a transport for one data set or session alone. Collective.
+  /// Returns a transport that only one data set or session uses. Collective.
   std::function<std::shared_ptr<exchange::Transport>()> connect;
 };
 
@@ -22,8 +22,8 @@ struct TESSERA_HIDDEN Communicator::State {
 
 namespace api {
 
-/// A communicator over a transport that the caller owns. Everything made with it shares the transport and must be used
-/// one after the other. The transport must outlive all of it.
+/// Returns a communicator that uses a transport owned by the caller. All objects made with the communicator share the
+/// transport, so they must be used one after the other. The transport must outlive all of them.
 Communicator communicator_over(exchange::Transport& transport);
 
 }  // namespace api

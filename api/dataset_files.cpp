@@ -58,16 +58,18 @@ void check_options(const std::filesystem::path& file, const ReadOptions& options
   refuse(!options.plot3d_q.empty(), "plot3d_q");
 }
 
-/// Adds the same note on every rank.
+/// Adds the same note about fill values on every rank.
 void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
   std::optional<scene::FillValue> fill = frame::find_fill_value(transport, state.mesh, state.facts);
   if (!fill) return;
   const bool of_points = state.facts.association == Association::point;
-  if (of_points && transport.size() > 1) fill->count = 0;  // parts share the points between them
+  if (of_points && transport.size() > 1)
+    fill->count = 0;  // adjacent parts both count the points between them, so the
+                      // sum is unknown
   state.notes.push_back(scene::words_on(*fill, of_points ? "points" : "tets"));
 }
 
-/// For a file with one step: the time in its field data.
+/// For a file with one step: sets the time to that in the file's field data.
 void set_own_time(const io::InputFile& file, scene::TimeStepRead& read) {
   if (read.count > 1 || !read.times.empty()) return;
   if (const auto time = io::vtk_time_value(file.path, file.beginning)) read = {1, 0, {*time}};
@@ -81,7 +83,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
     const scene::TraceScope timing(options.trace, "read");
     return frame::open_shared_volume(transport, input, options);
   }();
-  api::require_same_files(transport);  // the ones that `volume` names
+  api::require_same_files(transport);  // the files to which `volume` refers
   state->axis_scale = cells::chosen_scale(options.axis_scale, volume.xy_in_degrees,
                                           scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
@@ -149,7 +151,7 @@ class TracedMessages {
   TracedMessages(const TracedMessages&) = delete;
   TracedMessages& operator=(const TracedMessages&) = delete;
 
-  /// The trace for messages, or `alone` for a single process.
+  /// The trace that also records messages or, for a single process, `alone`.
   [[nodiscard]] Trace* face(Trace* alone) { return face_ ? &*face_ : alone; }
 
  private:
@@ -192,7 +194,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
   const auto open = [&] {
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     for (const auto& file : files) system::note_read(file);
-    api::require_same_files(*transport);  // first: the collective calls below depend on the files
+    api::require_same_files(*transport);  // must come first: the collective calls below depend on the files
     if (!identified) identified.emplace(files.front());
     if (!StateAccess::of(*identified).is_there) throw system::missing_file(files.front());
     const io::InputFile& first = StateAccess::of(*identified).file;
@@ -207,7 +209,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     state->files.assign(files.begin(), files.end());
     state->options = options;
     state->clip = options.selection.clip;
-    state->options.trace = nullptr;  // it may not live as long as the state
+    state->options.trace = nullptr;  // the state may outlive the trace
     state->options.progress = nullptr;
     return StateAccess::make(state);
   };

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t max_frames = 10'000'000;
 
-/// The kernel would kill a process that renders an image larger than the memory, without a message.
+/// Throws if the image does not fit in memory. Otherwise the kernel would kill the process without a message.
 void check_fits_memory(ImageSize size) {
   constexpr double bytes_a_pixel = 22;  // four floats, a depth and buffers; measured at 4000 x 4000 and 8000 x 8000
   const double needed = bytes_a_pixel * size.width * size.height;
@@ -61,7 +61,7 @@ std::vector<FilmFrame> views(const FilmPlan& plan) {
   return frames;
 }
 
-/// The steps of a range that exist.
+/// Returns the existing steps of the plan's range.
 std::vector<TimeStep> in_range(std::vector<TimeStep> steps, const FilmPlan& plan) {
   if (!plan.steps) return steps;
   const auto [first, last_wished, stride] = *plan.steps;
@@ -133,11 +133,12 @@ std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
   if (plan.resume)
     for (auto& frame : frames)
       frame.finished = std::all_of(frame.outputs.begin(), frame.outputs.end(), [](const auto& output) {
-        std::error_code ignored;  // unreadable directory: not finished, and the check of outputs reports the reason
+        std::error_code ignored;  // a frame in an unreadable directory is not finished; the check of outputs reports
+                                  // the reason
         return std::filesystem::is_regular_file(output, ignored) && std::filesystem::file_size(output, ignored) > 0;
       });
-  // Checks all files now, so that a film does not fail at its last step because one is missing. The first step has
-  // determined the kind of data (plan.grids).
+  // Checks all files now, so that a film does not fail at its last step because a file is missing. The kind of data
+  // (plan.grids) was determined from the first step.
   if (is_series(plan))
     for (const auto& frame : frames)
       if (!frame.finished)
@@ -162,7 +163,7 @@ bool FilmFrame::is_there() const {
 void FilmFrame::require_still_there() const {
   if (step == 0) return;
   for (const auto& file : data.files) {
-    std::error_code unreadable;  // in that case reading reports the reason
+    std::error_code unreadable;  // for an unreadable file, reading reports the reason
     if (!std::filesystem::exists(file, unreadable) && !unreadable)
       throw Error(
           ErrorCode::system_failure,
@@ -178,7 +179,7 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
   std::vector<FieldInfo> widest;
   for (const FieldInfo& first : steps.front()) {
     FieldInfo field = first;
-    // A field may vary in one step only, for example an initial ramp.
+    // A field may vary only in one step, for example an initial ramp.
     bool is_quantity = false;
     const bool everywhere = std::ranges::all_of(steps, [&](const std::vector<FieldInfo>& step) {
       const auto found = std::ranges::find_if(step, [&](const FieldInfo& f) { return is_same(f, field); });
@@ -204,7 +205,7 @@ ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
       first.shows_shape())
     return options;
   options.field = first.field_name();
-  // Smoothing has made point data from cell data, so only the name is certain.
+  // After smoothing, the data are point data even if the file has cell data, so the prefix is not known.
   if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
   return options;
 }
@@ -231,7 +232,7 @@ void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::
       check_new(output);
       for (const auto& file : frame.data.files) check_not_input(output, file);
       if (frame.finished) continue;
-      // One query of the file system per directory and length of name is enough, except for existing names.
+      // The file system is queried once per directory and length of name; every existing name needs a query of its own.
       std::error_code unknown;
       const std::string kind = fmt::format("{}{}", output.filename().native().size(), output.extension().string());
       if (folders.insert(output.parent_path() / kind).second || std::filesystem::exists(output, unknown) || unknown)

@@ -54,7 +54,7 @@ const char* name_of(IntegratorKind kind) {
   }
 }
 
-/// Renders a grid with any number of processes.
+/// Renders a grid with one or several processes.
 class GridByRays final : public Session::State {
  public:
   GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
@@ -121,7 +121,8 @@ class GridByRays final : public Session::State {
     return {settings(), data().clip, sorts_last() ? transport_->size() : 1};
   }
 
-  /// Bricks get the memory that remains after an image of this size, so the renderer is made once the size is known.
+  /// Makes the renderer. This requires the image size, since bricks get the memory that remains after an image of that
+  /// size.
   void make_renderer(ImageSize size) {
     if (renderer_) return;
     const scene::TraceScope timing(trace_, "prepare");
@@ -134,19 +135,20 @@ class GridByRays final : public Session::State {
     renderer_.emplace(*data().samples, render, data().ranges);
   }
 
-  /// Ends the run on all ranks, which would otherwise wait for this one, and throws the run's error.
+  /// Ends the run on all ranks and throws the run's error. Otherwise the other ranks would wait for this one.
   void fail_others(const std::exception& fault) {
     if (transport_->size() == 1) return;
     transport_->fail(frame::run_error(*transport_, fault));
     transport_->check();
   }
 
-  /// The caller sets the frame numbers of a trace.
+  /// Returns the number for a frame's spans: the one that the caller has set in the trace or, without a trace,
+  /// `number`.
   [[nodiscard]] std::size_t traced(std::size_t number) const {
     return trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
   }
 
-  /// Renders frames that overlap.
+  /// Renders a list of frames, several at a time.
   std::size_t render_list(std::span<const View> views, const TransferFunction& function, Sink& sink,
                           const std::stop_token& stop) {
     if (views.empty()) return 0;
@@ -159,7 +161,7 @@ class GridByRays final : public Session::State {
     }
     frame::VolumeCallbacks callbacks;
     callbacks.frame = [&](frame::FinishedVolumeFrame&& finished) {
-      if (finished.stopped) return;  // reported on every rank below
+      if (finished.stopped) return;  // the stop is reported on every rank below
       RenderedFrame frame;
       frame.number = finished.frame;
       frame.statistics = statistics_of(finished, name_of(this->settings().integrator.kind));
@@ -183,7 +185,7 @@ class GridByRays final : public Session::State {
     return complete;
   }
 
-  /// None if it was stopped. Throws SinkFailure on rank 0 if its sink stopped it.
+  /// Renders a frame. Returns none if it was stopped. Throws SinkFailure on rank 0 if rank 0's sink threw an exception.
   std::optional<RenderedFrame> make(std::size_t number, const View& view, const TransferFunction& function,
                                     const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
     scene::FrameWatch watch(stop, tiles_to(sink, number));
@@ -212,7 +214,7 @@ class GridByRays final : public Session::State {
     return frame;
   }
 
-  /// Adds the deep image or the layers, in a separate pass. False if it was stopped.
+  /// Adds the deep image or the layers, in a separate pass. Returns false if it was stopped.
   bool add_depth(const View& view, const TransferFunction& function, const FrameSettings& settings,
                  const std::stop_token& stop, RenderedFrame& frame) {
     const auto start = std::chrono::steady_clock::now();
@@ -234,7 +236,8 @@ class GridByRays final : public Session::State {
     return true;
   }
 
-  /// Passes a frame to the sink. False if rank 0's sink threw and this is another rank; not checked for the last frame.
+  /// Passes a frame to the sink. Returns false on other ranks if rank 0's sink threw an exception; for the last frame
+  /// this is not checked.
   bool give(RenderedFrame&& frame, bool last, Sink& sink) {
     std::exception_ptr thrown;
     try {

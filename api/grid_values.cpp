@@ -19,8 +19,8 @@
 namespace tessera::api {
 namespace {
 
-/// Whether the volume is a scan, even if a phantom or a test image has few values: by its modality, or by a patient's
-/// Hounsfield units.
+/// Whether the volume is a medical scan, according to its modality or because its values are a patient's Hounsfield
+/// units. Scans are not labels even if they have few values, as those of a phantom or a test image do.
 bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
   const bool patient = volume.body_axes != BodyAxes::none || volume.axes_if_ct != BodyAxes::none;
   return !volume.tags.modality.empty() || (patient && values.front() <= -900 && values.back() >= 200);

@@ -11,8 +11,8 @@
 #include "io/volume/volume_reader.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-/// Interpretation of a grid's values other than as quantities: fill values, labels, the wrong byte order. Functions
-/// that take a transport are collective; all add notes to the volume.
+/// Detection of values of a grid that are not quantities: fill values, labels, values in the wrong byte order.
+/// Functions with a transport are collective. All functions add notes to the volume.
 namespace tessera::api {
 
 /// Fill values would dominate the range and the colours, and hide what the volume is: huge ones become blank; for

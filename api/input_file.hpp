@@ -12,11 +12,11 @@ inline namespace v0_1 {
 
 struct TESSERA_HIDDEN InputFile::Found {
   explicit Found(const std::filesystem::path& path);
-  /// io::is_volume(), computed once.
+  /// The result of io::is_volume(), which is computed once.
   [[nodiscard]] bool is_volume() const;
 
   bool is_there;
-  io::InputFile file;  ///< identified by its name alone if it is missing
+  io::InputFile file;  ///< identified by its name alone if the file is missing
 
  private:
   mutable std::once_flag once_;

@@ -34,7 +34,7 @@ struct Job::State {
     return alone->rank(0);
   }
 
-  /// First contact, before ranks wait for one another.
+  /// Makes the first contact between ranks, before ranks wait for one another.
   void meet() {
     if (std::exchange(has_met, true)) return;
     exchange::make_first_contact(transport(), exchange::first_contact_patience(), reporting.arguments);
@@ -46,7 +46,8 @@ struct Job::State {
 Job::Job(JobReporting reporting)
     : state_(std::make_unique<State>(State{std::move(reporting), nullptr, nullptr, false})) {
   if (exchange::launched_by_mpi()) {
-    // The launcher closes its sockets when it dies: then a write fails, instead of a signal killing the rank.
+    // When the launcher dies, its sockets are closed. Ignoring SIGPIPE makes writes to them fail instead of killing the
+    // rank.
     std::signal(SIGPIPE, SIG_IGN);
     state_->mpi = std::make_unique<exchange::MpiTransport>(
         exchange::MpiTransport::Hooks{state_->reporting.report, exchange::expect_end, exchange::ended_from_outside});

@@ -43,7 +43,8 @@ class MeshAlone final : public Session::State {
   MeshAlone(Dataset dataset, const Settings& settings)
       : State(std::move(dataset), settings),
         renderer_(data().prepared(settings.threads, settings.trace), data().facts, settings) {
-    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // checks that both are 1 or unset
+    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // checks that both numbers are 1 or
+                                                                                    // not set
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
@@ -102,7 +103,7 @@ class MeshOnRanks final : public Session::State {
           fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
                       "`compositors`",
                       state.source, transport_->rank()));
-      transport_->fail(error);  // other ranks may not find an error
+      transport_->fail(error);  // other ranks may not have found the error
       throw error;
     }
     renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
@@ -131,11 +132,11 @@ class MeshOnRanks final : public Session::State {
   [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
 
  private:
-  /// How many frames are complete, on every rank, and whether the next one must be made from segments.
+  /// Number of frames that are complete on every rank, and whether the next frame must be made from segments.
   struct Part {
     std::uint64_t complete = 0, overlapping = 0;
   };
-  /// Thrown if a frame's runs overlap: ends the frames on all ranks in order.
+  /// Thrown if runs of a frame overlap. All ranks then end their frames in an orderly way.
   struct Overlap {};
 
   Part render_from(std::size_t first, std::span<const View> views, const TransferFunction& function,
@@ -176,7 +177,7 @@ class MeshOnRanks final : public Session::State {
     try {
       renderer_->render(jobs, function, callbacks, stop);
     } catch (const api::SinkFailure& failure) {
-      thrown = failure.cause;  // the other ranks have also ended in order
+      thrown = failure.cause;  // the other ranks have also ended in an orderly way
     } catch (const Overlap&) {
       part.overlapping = 1;
     }
@@ -186,14 +187,15 @@ class MeshOnRanks final : public Session::State {
     return part;
   }
 
-  /// Raw segments are sent with the index of their tet, in 32 bits.
+  /// Throws if the mesh has too many tets for raw segments, which are sent with the index of their tet in 32 bits.
   void check_exchange(Exchange exchange) const {
     if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
       throw scene::bad_input(
           fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", data().facts.tets));
   }
 
-  /// What this rank projects: the part with which it was opened, or its share of the mesh that is whole on every rank.
+  /// The tets that this rank projects: the part that the rank has opened or, if every rank has the whole mesh, the
+  /// rank's share.
   frame::ProjectorMesh part() {
     const Dataset::State& state = data();
     frame::ProjectorMesh mesh;
@@ -244,7 +246,7 @@ class MeshOnRanks final : public Session::State {
   frame::DistributedSettings distributed_;
   std::shared_ptr<exchange::Transport> transport_;
   bool overlapping_ = false;  ///< cells of several ranks overlap: segments are exchanged from now on
-  std::optional<Trace> projecting_, compositing_;  ///< the caller's trace, by role
+  std::optional<Trace> projecting_, compositing_;  ///< the caller's trace, for each role
   std::optional<frame::DistributedRenderer> renderer_;
 };
 

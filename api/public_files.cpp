@@ -174,7 +174,7 @@ void write_grid(const Dataset& grid, const std::filesystem::path& file, int bloc
   const Dataset::State& state = StateAccess::of(grid);
   if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, not a grid; use write_mesh");
   check_grid_name(file);
-  // Labels are written as in the file, at points.
+  // Labels are written as they were in the file, as point data.
   const auto* const labels = dynamic_cast<const scene::LabelSource*>(state.samples.get());
   io::write_volume(labels == nullptr ? *state.samples : labels->points(), file, block, state.body_axes, state.tags);
 }

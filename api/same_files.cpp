@@ -24,7 +24,7 @@ struct Fingerprint {
   bool operator==(const Fingerprint&) const = default;
 };
 
-/// None for anything but a readable regular file.
+/// Returns none unless the file is regular and readable.
 std::optional<Fingerprint> fingerprint_of(const std::string& name) {
   constexpr std::uint64_t all_of = 1 << 20, places = 64, piece = 1 << 14;
   const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

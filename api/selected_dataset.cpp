@@ -32,7 +32,7 @@ scene::TetMesh copy_of(const scene::TetMeshView& view) {
   return mesh;
 }
 
-/// One step of a selection from a whole mesh: a threshold, or a clip.
+/// Applies one step of a selection to a whole mesh: the threshold or the clip.
 Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const Selection& selection) {
   auto state = std::make_shared<Dataset::State>();
   scene::TetMesh mesh = copy_of(from->mesh);
@@ -95,7 +95,7 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
 
 void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source) {
   const scene::GridGeometry& g = grid.samples->geometry();
-  // The grid as six tets around its diagonal.
+  // The box of the grid as six tets around its diagonal.
   scene::TetMesh mesh;
   for (int n = 0; n < 8; ++n) {
     glm::dvec3 local;

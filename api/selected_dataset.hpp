@@ -9,8 +9,9 @@
 
 namespace tessera::api {
 
-/// The mesh before clipping, for a data set that is whole on this rank, or was read from files, which may be read
-/// again. Throws as Dataset::open, and Error(bad_input) if this rank has only a part. `data` must outlive the result.
+/// Returns the mesh before clipping. The data set must be whole on this rank or have been read from files, which may be
+/// read again. Throws the same errors as Dataset::open(), and Error(bad_input) if this rank has only a part of a mesh
+/// without files. `data` must outlive the result.
 frame::UncutMesh uncut_mesh(const Dataset::State& data);
 
 /// Reduces a grid's box to that of its part inside the half-spaces. Throws Error(bad_input) if nothing remains.

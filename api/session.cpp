@@ -25,8 +25,9 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// The view with pixels no smaller than 1e-60 of what they show: far below the resolution of positions, so that the
-/// image is the same, and products of pixel coordinates stay within a double's range.
+/// Returns the view with its magnification limited: a parallel scale of at least 1e-60 of the largest coordinate of the
+/// data relative to the eye, or a view angle of at least 1e-60 degrees. This is far below the resolution of positions,
+/// so that the image does not change, and it keeps products of pixel coordinates within the range of double.
 View within_range(View view, const Box& box) {
   constexpr double least = 1e-60;
   Camera& camera = view.camera;
@@ -41,14 +42,14 @@ View within_range(View view, const Box& box) {
 }
 
 /// Whether products of pixel coordinates are finite everywhere in a box. The coordinates are linear in the position, so
-/// testing the corners is enough.
+/// that testing the corners is sufficient.
 bool has_coordinates(const View& view, const Box& box) {
   const scene::PixelView seen(view.camera, view.size);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
                        (corner & 4) != 0 ? box.high.z : box.low.z);
     const scene::PixelPlace place = seen.project(p);
-    // Products have up to three of the coordinates, or two depths.
+    // Products have up to three coordinates or two depths as factors.
     if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.w)}) < 1e100)) return false;
     if (!(std::abs(place.depth) < 1e150)) return false;
   }

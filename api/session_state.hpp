@@ -31,7 +31,7 @@ class TESSERA_HIDDEN Session::State {
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  /// For grids.
+  /// Only for grids.
   [[nodiscard]] virtual BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
                                                          const TransferFunction& function) const;
 
@@ -47,16 +47,15 @@ class TESSERA_HIDDEN Session::State {
 
 namespace api {
 
-/// For a mesh: with this process alone, or with all ranks.
+/// Make the state for a mesh that is rendered by this process alone or by all ranks.
 std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings);
 std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
                                               std::shared_ptr<exchange::Transport> transport);
-/// For a grid, with any number of ranks.
+/// Makes the state for a grid that is rendered by one or several ranks.
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
                                              std::shared_ptr<exchange::Transport> transport);
 
-/// An exception of the caller's sink, as opposed to an error of the run: it stops a frame but leaves the session
-/// usable.
+/// An exception from the caller's sink. Unlike an error of the run, it stops a frame but leaves the session usable.
 struct SinkFailure {
   std::exception_ptr cause;
 };
@@ -70,7 +69,8 @@ void call_sink(const Call& call) {
   }
 }
 
-/// A callback that passes tiles of frame `number` to `sink`; throws SinkFailure.
+/// Returns a callback that passes the tiles of frame `number` to `sink`. The callback throws SinkFailure if the sink
+/// throws.
 inline scene::FrameWatch::Finished tiles_to(Sink& sink, std::size_t number) {
   if (!sink.wants_tiles()) return {};
   return [&sink, number](const PixelRect& rect, const Image& image) {

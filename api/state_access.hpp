@@ -11,7 +11,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The library's access to the state of its public classes. No installed header defines it.
+/// Gives the library access to the state of its public classes. No installed header defines this structure.
 struct StateAccess {
   static const Communicator::State& of(const Communicator& communicator) { return *communicator.state_; }
   static const Dataset::State& of(const Dataset& dataset) { return *dataset.state_; }

@@ -18,8 +18,8 @@ using exchange::MessageKind;
 
 constexpr int pings = 8;
 
-/// The writer's clock minus this rank's, in microseconds: from the fastest of a few exchanges, with an error of at most
-/// half its duration.
+/// The writer's clock minus this rank's clock, in microseconds. It is computed from the fastest of a few message
+/// exchanges; its error is at most half the duration of that exchange.
 double clock_offset(exchange::Transport& transport, int writer, const Trace& trace) {
   double offset = 0, quickest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < pings; ++i) {

@@ -17,8 +17,8 @@
 namespace tessera::api {
 namespace {
 
-/// For functions of the base-10 logarithm: linear between values this far apart, with an error below 2e-4 of a colour's
-/// or an extinction's change.
+/// Distance of knots, in powers of ten, for functions of the base-10 logarithm. Between such knots the function is
+/// linear in the value; the error is below 2e-4 of the change of a colour or extinction.
 constexpr double decades_a_knot = 1.0 / 64;
 
 LoadedTransferFunction load(const std::string& file_or_preset, const colormaps::DefaultField& field,
@@ -74,7 +74,7 @@ double smallest_positive(const Dataset::State& data) {
   const auto consider = [&](double value) {
     if (value > 0) least = std::min(least, value);
   };
-  // Interpolated values of a grid come arbitrarily close to 0 next to a sample <= 0, so use the stored samples.
+  // Interpolated values of a grid may be arbitrarily close to 0 next to a sample <= 0, so the stored samples are used.
   std::ranges::for_each(found.stored, consider);
   if (found.stored.empty())
     for (const scene::FieldSample& s : found.samples) consider(s.value);
@@ -132,7 +132,7 @@ std::string remedy_for_clear(const LoadedTransferFunction& loaded, const Transfe
   return "`rescale` stretches it over them, `range` over others";
 }
 
-/// Warns of an image that is correct but shows nothing.
+/// Adds a warning if the image will be correct but show nothing.
 void warn_of_nothing(const Dataset::State& data, const std::string& file_or_preset,
                      const TransferFunctionOptions& options, LoadedTransferFunction& loaded) {
   const auto [low, high] = data.facts.scalar_range;

@@ -7,8 +7,8 @@
 
 namespace tessera::api {
 
-/// The preset or file of this name, or the default function, over the range of the field or the requested range; with a
-/// warning if it shows almost nothing.
+/// Returns the preset or file of this name, or the default function, over the range of the field or the requested
+/// range. The result contains a warning if the function shows almost nothing.
 LoadedTransferFunction transfer_function_of(const Dataset::State& data, const std::string& file_or_preset,
                                             const TransferFunctionOptions& options);
 

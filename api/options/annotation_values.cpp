@@ -21,7 +21,7 @@ std::optional<Place> place_of(std::string_view word) {
   return found == std::end(places) ? std::nullopt : std::optional(found->second);
 }
 
-/// The place that a flag states, or `otherwise` for the flag without a value.
+/// The place given as the flag's value, or `otherwise` for a flag without a value.
 Place parse_place(const char* option, const std::string& word, Place otherwise) {
   if (word == "true") return otherwise;
   if (const auto place = place_of(word)) return *place;
@@ -30,7 +30,8 @@ Place parse_place(const char* option, const std::string& word, Place otherwise) 
   throw bad_input(fmt::format("{}: '{}' is not a place; use {}", option, word, known));
 }
 
-/// The text before the first colon is only a place if it is the name of one: "Time: {time}" is text.
+/// Splits the words into place and text. The part before the first colon is a place only if it is the name of one:
+/// "Time: {time}" is a text.
 Text parse_text(const std::string& words) {
   const std::size_t colon = words.find(':');
   const auto place = colon == std::string::npos ? std::nullopt : place_of(std::string_view(words).substr(0, colon));
@@ -44,18 +45,18 @@ ColorBar parse_color_bar(const OptionWords& words) {
   if (words.given("field-unit")) bar.title += fmt::format(" [{}]", words.word("field-unit"));
   bar.range = words.interval("color-bar-range");
   const auto scale = words.choice("color-bar-scale", off_on);
-  // By default as the transfer function, if all values have a logarithm.
+  // By default the bar has the scale of the transfer function, if all its values have a logarithm.
   bar.logarithmic = scale.value_or(words.given("log") && (!bar.range || (*bar.range)[0] > 0));
   return bar;
 }
 
 Axes parse_axes(const OptionWords& words) {
   if (words.word("axes") == "true") return {};
-  const std::size_t shown = *words.choice("axes");  // triad, box, both
+  const std::size_t shown = *words.choice("axes");  // 0: triad, 1: box, 2: both
   return {.triad = shown != 1, .box = shown != 0};
 }
 
-/// Throws for options that state how to draw `what` if it is not drawn.
+/// Throws if `what` is not drawn, but an option states how to draw it.
 void refuse_without(bool drawn, const char* what, const OptionWords& words,
                     std::initializer_list<const char*> options) {
   for (const char* option : options)

@@ -27,7 +27,7 @@ Error wrong(const std::string& option, const std::string& text, const std::strin
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
 
-/// 0xrrggbb in sRGB to linear light (IEC 61966-2-1).
+/// Converts a colour 0xrrggbb in sRGB to linear light (IEC 61966-2-1).
 glm::dvec3 linear_color(std::uint32_t rgb) {
   glm::dvec3 color{};
   for (int c = 0; c < 3; ++c) {
@@ -37,7 +37,7 @@ glm::dvec3 linear_color(std::uint32_t rgb) {
   return color;
 }
 
-/// `#rrggbb`, or `#rgb` for `#rrggbb`.
+/// Reads `#rrggbb` or its short form `#rgb`.
 std::optional<glm::dvec3> color_of_hex(std::string_view text) {
   const std::string_view digits = text.substr(1);
   const bool is_short = digits.size() == 3;

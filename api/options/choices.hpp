@@ -10,8 +10,8 @@
 #include "tessera/mechanisms.hpp"
 #include "tessera/settings.hpp"
 
-/// The values of options that are one of several words, in the order of these words in the option table: read by
-/// OptionWords::choice(), written by State::set().
+/// The values that the words of an option with several choices stand for, in the order of the words in the option
+/// table. OptionWords::choice() converts words to values, State::set() converts values to words.
 namespace tessera::api {
 
 template <class T>

@@ -4,7 +4,7 @@
 namespace tessera::api {
 namespace {
 
-// One per line would fill three screens.
+// Not formatted, because one colour per line would fill three screens.
 // clang-format off
 constexpr NamedColor named_colors[] = {
     {"aliceblue", 0xf0f8ff}, {"antiquewhite", 0xfaebd7}, {"aqua", 0x00ffff}, {"aquamarine", 0x7fffd4},

@@ -11,7 +11,7 @@ namespace tessera {
 namespace api {
 namespace {
 
-/// T:A,... ascending from 0 to 1.
+/// Pairs T:A, separated by commas, with T ascending from 0 to 1.
 std::vector<std::array<double, 2>> opacity_points(const OptionWords& words) {
   std::vector<std::array<double, 2>> points;
   if (!words.given("opacity-points")) return points;

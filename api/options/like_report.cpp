@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The views of all frames, each once: those of a time series apply to every step.
+/// The views of all frames, each once. In a time series the same views apply to every step.
 Json report_views(const Json& report) {
   Json views = Json::array();
   for (const Json& frame : report.at("frames"))
@@ -25,7 +25,7 @@ Json report_views(const Json& report) {
   return views;
 }
 
-/// The word for --field; none if the report's data have a single field.
+/// The value for --field; none if the report's data have a single field.
 std::string report_field(const Json& data) {
   const Json &field = data.at("field"), &fields = data.at("fields");
   const auto name = field.at("name").get<std::string>();

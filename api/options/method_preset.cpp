@@ -19,7 +19,7 @@ void apply_method_preset(int ranks, OptionWords& words) {
                                 words.word("preset"), *colors));
   static_cast<void>(words.choice("preset"));
   words.set_default("rasterizer", "scanline");
-  // An accuracy only applies to `auto`, so giving one selects that method.
+  // An accuracy is only valid with `auto`, so a given accuracy selects that method.
   if (!words.given("accuracy")) words.set_default("integrator", "sampled:4");
   words.set_default("compositor", "gl-fragment");
   if (words.word("compositor") != "cpu") words.set_default("backend", "osmesa");

@@ -13,7 +13,7 @@
 namespace tessera::api {
 namespace {
 
-/// Integrators of grids have no numbers: --step sets their step length.
+/// Integrators of grids are given without numbers: --step sets their step length.
 Integrator grid_integrator(const std::string& word) {
   Integrator integrator;
   for (const auto kind :
@@ -33,7 +33,7 @@ Integrator integrator_of(const OptionWords& words, bool is_grid) {
   return integrator;
 }
 
-/// --shade and --light.
+/// The shading of the options --shade and --light.
 std::optional<Shading> shading_of(const OptionWords& words) {
   const std::string& light = words.word("light");
   if (!words.given("shade")) {
@@ -59,7 +59,7 @@ void set_mesh(const OptionWords& words, RenderOptions& options) {
   if (words.given("higher-order-tolerance")) return;
   options.higher_order_accuracy =
       words.given("accuracy") ? options.settings.integrator.accuracy : default_higher_order_accuracy;
-  // Begin as coarsely as read_for_accuracy() does.
+  // Begin with the same tolerance as read_for_accuracy().
   options.read.higher_order_tolerance = first_higher_order_tolerance(*options.higher_order_accuracy);
 }
 

@@ -28,13 +28,14 @@ bool is_setting(std::string_view name) {
   return row != nullptr && !row->is(Trait::positional);
 }
 
-/// The name of a setting is a word of the sentence: not part of a file's name, and not quoted.
+/// Whether a setting's name may follow the text `before`: the name must be a word of its own, neither part of a file's
+/// name nor quoted.
 bool may_precede(std::string_view before) { return before.empty() || before.back() == ' ' || before.back() == '('; }
 bool may_follow(std::string_view after) {
   return after.empty() || std::string_view(" ,;:)=").find(after.front()) != std::string_view::npos;
 }
 
-/// `parse` applied to the word, if there is one.
+/// Applies `parse` to the word, if there is one.
 template <class Parse>
 auto parsed(const OptionWords& words, std::string_view name, const Parse& parse)
     -> std::optional<decltype(parse(std::string(), std::string()))> {
@@ -83,7 +84,7 @@ std::string with_options(std::string_view text) {
     if (close == std::string_view::npos) break;
     const std::string_view name = text.substr(open + 1, close - open - 1);
     if (!may_precede(text.substr(0, open)) || !may_follow(text.substr(close + 1)) || !is_setting(name)) {
-      // The second backquote may be the opening one of a name.
+      // The second backquote may be the first one of a name.
       result += text.substr(done, close - done);
       done = close;
       continue;
@@ -105,7 +106,9 @@ std::vector<std::string> with_options(const std::vector<std::string>& notes) {
 
 const OptionRow& OptionWords::row(std::string_view name) const {
   const OptionRow* found = find_option(command_, name);
-  if (found == nullptr) found = find_option(any_command, name);  // options of other commands were not given
+  if (found == nullptr)
+    found = find_option(any_command, name);  // options of other commands were not given, so they
+                                             // have no words
   if (found == nullptr || found->key() != name)
     throw std::logic_error(fmt::format("'{}' is not the key of an option", name));
   return *found;
@@ -128,7 +131,7 @@ const std::string& OptionWords::word(std::string_view name) const {
 }
 
 void OptionWords::set(std::string_view name, std::vector<std::string> values) {
-  // An empty word counts as no value, except for an option that lists texts.
+  // An empty word means that there is no value, except for options with a list of texts.
   if (!row(name).is(Trait::list) && values.size() == 1 && values.front().empty()) values.clear();
   if (values.empty())
     words_.erase(std::string(name));

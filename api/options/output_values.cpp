@@ -35,7 +35,7 @@ Peel parse_peel(const std::string& word) {
   return peel;
 }
 
-/// Sets the layers; outputs and method must already be set.
+/// Sets the layers. Outputs and method must already be set.
 void set_peel(const OptionWords& words, RenderOptions& options) {
   options.frame.peel = parse_peel(words.word("peel"));
   if (!options.films.empty())
@@ -129,7 +129,7 @@ void set_pictures(const OptionWords& words, RenderOptions& options) {
   options.annotation = annotation_options(words, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
   assign(options.repeat, words.count("repeat", 1));
-  if (options.repeat > 0) options.settings.ranks.frames_in_flight = 1;  // times are for one frame alone
+  if (options.repeat > 0) options.settings.ranks.frames_in_flight = 1;  // measured times are those of a single frame
   assign(options.verify, words.count("verify", 1));
   options.frame.keep_uncertainty = options.is_grid() && options.verify > 0;
 }

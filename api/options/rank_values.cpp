@@ -10,7 +10,7 @@
 namespace tessera::api {
 namespace {
 
-/// How a volume's image is split between ranks.
+/// Sets how a volume's image is split between ranks.
 void set_balance(const OptionWords& words, RankSettings& ranks) {
   assign(ranks.distribution, words.choice("distribution", distributions));
   assign(ranks.direct_send, words.choice("direct-send", direct_sends));

@@ -40,7 +40,7 @@ Selection selection_of(const OptionWords& words) {
   return selection;
 }
 
-/// NAME, NAME:FACTOR or off.
+/// Reads NAME, NAME:FACTOR or `off`.
 std::optional<Warp> warp_of(const std::string& word) {
   if (word.empty()) return std::nullopt;
   if (word == "off") return Warp{};
@@ -61,7 +61,7 @@ std::size_t step_number(const std::string& word, int low = 0) {
   return static_cast<std::size_t>(parse_count("`time_step`", word, low, std::numeric_limits<int>::max()));
 }
 
-/// WxHxD.
+/// Reads WxHxD.
 std::optional<GridIndex> dims_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   GridIndex dims{};

@@ -14,7 +14,8 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// Throws for options of the other kind of data, unless a mesh option has its default, which is its first choice.
+/// Throws for options of the other kind of data, except for options of meshes with their default value, which is the
+/// first choice.
 void refuse_others(const OptionWords& words, bool is_grid) {
   for (const OptionRow* row : option_rows(is_grid ? Trait::meshes : Trait::volumes)) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;
@@ -54,7 +55,8 @@ RenderOptions render_options(const OptionWords& words, bool is_grid) {
   plan.steps = api::time_steps(words);
   api::set_outputs(words, options);
   options.read = read_options(words, is_grid);
-  if (options.read.time_step && is_series(plan)) {  // a step of the series, not of its files
+  if (options.read.time_step && is_series(plan)) {  // for a series, the option is a step of the series, not of its
+                                                    // files
     plan.steps = StepRange{*options.read.time_step, options.read.time_step};
     options.read.time_step.reset();
   }

@@ -7,8 +7,8 @@
 
 namespace tessera::api {
 
-/// The name of the option `tile-size` in messages of libraries, `tile_size` in backquotes; with_options() turns it into
-/// --tile-size.
+/// Returns the name of an option's setting as libraries write it in messages: for `tile-size` it is `tile_size`, in
+/// backquotes. with_options() replaces this name by --tile-size.
 inline std::string setting_name(std::string_view option) {
   std::string name(option);
   std::ranges::replace(name, '-', '_');

@@ -19,7 +19,7 @@ namespace tessera {
 namespace api {
 namespace {
 
-/// The shortest texts that read back the same.
+/// These functions return the shortest text that reads back the same.
 std::string text_of(double number) { return fmt::format("{}", number); }
 std::string text_of(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string text_of(const std::array<double, 2>& ends) { return fmt::format("{},{}", ends[0], ends[1]); }
@@ -31,7 +31,7 @@ std::string text_of(const std::optional<T>& value) {
   return value ? text_of(*value) : std::string();
 }
 
-/// `value`, or "", which removes an option, if it is the default.
+/// Returns the text of `value`, or "", which removes the option, if it is the default.
 template <class T>
 std::string unless_default(const T& value, const T& by_default) {
   return value == by_default ? std::string() : text_of(value);

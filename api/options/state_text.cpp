@@ -34,7 +34,7 @@ const OptionRow& row_named(std::string_view name, const std::string& source) {
       fmt::format("{}: {} is not an option of render; see tessera render --help-all", source, scene::quote(name)));
 }
 
-/// Values of a text file as on the command line: a flag is "true", or absent if it is false.
+/// Converts the values in a text file to words of the command line: a flag is "true", or has no word if it is false.
 std::vector<std::string> words_of(const OptionRow& row, std::vector<std::string> values, std::string_view name,
                                   const std::string& source) {
   const bool is_flag = row.is(Trait::flag);
@@ -155,7 +155,7 @@ std::string State::toml() const {
 
 void State::set(std::string_view option, std::vector<std::string> values) {
   const OptionRow& row = api::row_named(option, "state");
-  // An empty word counts as no value, except for an option that lists texts.
+  // An empty word means that there is no value, except for options with a list of texts.
   if (!row.is(Trait::list) && values.size() == 1 && values.front().empty()) values.clear();
   if (row.is(Trait::flag) && !values.empty()) values = api::words_of(row, std::move(values), option, "state");
   if (values.size() > 1 && !row.is(Trait::list))

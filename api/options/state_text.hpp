@@ -8,14 +8,15 @@
 
 #include "tessera/program/options.hpp"
 
-/// Conversion between JSON values of options and words. Messages begin with `source` and call the option `name`.
+/// Conversion between JSON values of options and words. Messages begin with `source` and use `name` for the option.
 namespace tessera::api {
 
-/// None for null and false. Throws Error(bad_input) for a value of another type than the option takes.
+/// Converts a JSON value to words; null and false give no words. Throws Error(bad_input) if the value does not have the
+/// option's type.
 std::vector<std::string> json_words(const OptionRow& row, const nlohmann::json& value, std::string_view name,
                                     const std::string& source);
 
-/// Text, a list of texts or true, for words that are given.
+/// Converts one or more words to a text, a list of texts or true.
 nlohmann::json json_of_words(const OptionRow& row, const std::vector<std::string>& words);
 
 }  // namespace tessera::api

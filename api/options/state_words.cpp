@@ -33,7 +33,7 @@ const OptionRow& key_named(const std::string& name) {
   throw bad_input(fmt::format("state: {} is not a setting; docs/SERVER.md lists them", scene::quote(name)));
 }
 
-/// Limits the length and number of texts, which come from the network.
+/// Throws if there are too many texts or if they are too long. The texts come from the network.
 void check_texts(const OptionRow& row, const std::vector<std::string>& texts) {
   constexpr std::size_t most = 64, longest = 4096;
   if (texts.size() > most)
@@ -51,7 +51,7 @@ bool is_preset(const std::string& text) {
   return std::ranges::find(presets, text.substr(0, text.find(':'))) != presets.end();
 }
 
-/// Throws for a file name: only JSON text and presets are accepted from the network.
+/// Throws for the name of a file: from the network, only JSON text and presets are accepted.
 void check_no_file(const OptionRow& row, const std::string& text) {
   if (is_json_text(text)) return;
   if (row.is(Trait::camera)) throw bad_input("state: 'camera' is not a camera (a JSON object); send one");
@@ -59,14 +59,14 @@ void check_no_file(const OptionRow& row, const std::string& text) {
     throw bad_input(fmt::format("state: '{}' is neither a preset nor a JSON object; send one of them", row.key()));
 }
 
-/// `started`: the words with which the server was started; a state may name their files.
+/// Throws for surfaces from files, except those in `started`, the words with which the server was started.
 void check_surfaces(const std::vector<std::string>& texts, const std::vector<std::string>& started) {
   const auto is_started = [&](const std::string& file) {
     return std::ranges::any_of(started,
                                [&](const std::string& word) { return word == file || word.starts_with(file + ":"); });
   };
   for (const std::string& text : texts) {
-    // The longest name first: a file name may contain colons.
+    // The longest name is tried first, because a file name may contain colons.
     for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(':', end - 1))
       if (const std::string file = text.substr(0, end); names_surface_file(file) && !is_started(file))
         throw bad_input(
@@ -100,7 +100,7 @@ nlohmann::json state_of_words(const OptionWords& words) {
   nlohmann::json state = nlohmann::json::object();
   for (const auto& [name, values] : words.all()) {
     const OptionRow& row = *find_option(Trait::render, name);
-    // A file is the base of every state, so it is not part of one.
+    // A file was given when the server was started and applies to every state, so states do not contain it.
     const bool is_file = row.is(Trait::camera | Trait::function) && !is_json_text(values.front()) &&
                          !(row.is(Trait::function) && api::is_preset(values.front()));
     if (row.is(Trait::state) && !is_file) state[name] = api::json_of_words(row, values);
@@ -130,7 +130,7 @@ std::string shell_words(const std::vector<std::string>& arguments) {
       line += argument;
       continue;
     }
-    // The option's name stays outside the quotes, for readability.
+    // Only the value is quoted, not the option's name, for readability.
     const std::size_t equals = argument.starts_with("--") ? argument.find('=') : std::string::npos;
     const std::size_t begin = equals == std::string::npos ? 0 : equals + 1;
     line.append(argument, 0, begin);

@@ -5,7 +5,7 @@
 
 namespace tessera::api {
 
-/// Whether a surface's name is that of a file and not of a block: by its extension, or because the file exists.
+/// Whether the name of a surface denotes a file, not a block: because of its extension, or because the file exists.
 bool names_surface_file(const std::string& name);
 
 }  // namespace tessera::api

@@ -17,7 +17,7 @@ namespace tessera {
 namespace api {
 namespace {
 
-/// COLOUR, COLOUR:OPACITY or :OPACITY, the text after a surface's name. `given`: the whole word, for messages.
+/// The text after a surface's name: COLOUR, COLOUR:OPACITY or :OPACITY. `given` is the whole word, for messages.
 struct Look {
   std::optional<glm::dvec3> color{};
   double opacity = 1;
@@ -45,7 +45,7 @@ IsoSurface iso_of(const std::string& word) {
   return {value, look.color, look.opacity};
 }
 
-/// Where the name of a surface ends: an existing file's name may contain colons.
+/// Position where the name of a surface ends; the name of an existing file may contain colons.
 std::size_t end_of_name(const std::string& word) {
   std::size_t end = word.size();
   for (int colons = 0; colons <= 2 && end != std::string::npos && end > 0; ++colons) {

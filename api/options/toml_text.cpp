@@ -84,7 +84,7 @@ class Parser {
   void skip_comment() {
     if (peek() == '#') rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size()));
   }
-  /// Skips blanks, line ends and comments. False at the end.
+  /// Skips blanks, line ends and comments. Returns false at the end of the text.
   bool skip_to_content() {
     for (;;) {
       skip(" \t\r\n");
@@ -181,7 +181,7 @@ class Parser {
 
   std::string_view rest_;
   const std::string& source_;
-  std::size_t number_ = 1;  ///< of the current line
+  std::size_t number_ = 1;  ///< number of the current line
 };
 
 }  // namespace

@@ -7,40 +7,42 @@
 
 #include "tessera/program/render_options.hpp"
 
-/// Conversion of option words to values, by subject: the parts of render_options(), which throw as it does.
+/// Conversion of option words to values: the parts of render_options(), each for one subject. They throw the same
+/// errors.
 namespace tessera::api {
 
-/// `all`, FIRST:LAST or FIRST:LAST:STRIDE of --time-step; no value for other words, which name one step.
+/// Reads `all`, FIRST:LAST or FIRST:LAST:STRIDE of --time-step. Returns none for any other word, which denotes a single
+/// step.
 std::optional<StepRange> time_steps(const OptionWords& words);
 
-/// transfer_function_of() with the library's setting names in messages.
+/// Does the same as transfer_function_of(), but its messages contain the library's names of settings.
 LoadedTransferFunction chosen_function(const Dataset& data, const RenderOptions& options);
-/// How images are written to files.
+/// Options for writing images to files.
 ImageFileOptions image_options(const OptionWords& words);
 
 void set_function(const OptionWords& words, RenderOptions& options);
 void set_view(const OptionWords& words, RenderOptions& options);
 
-/// Includes the triangles of files; names of blocks are added to `blocks`.
+/// The surfaces, including the triangles of files. Names of blocks are added to `blocks`.
 Surfaces surfaces_of(const OptionWords& words, std::vector<BlockSurfaceWord>& blocks);
-/// Only the iso-surfaces.
+/// Only the iso-surfaces of surfaces_of().
 std::vector<IsoSurface> iso_surfaces_of(const OptionWords& words);
-/// A warning for each iso-surface whose value is outside `range`, the field's.
+/// Returns a warning for each iso-surface whose value is outside the field's range, `range`.
 std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range);
 
-/// How pixels are computed, once it is known whether the data are meshes or grids.
+/// Sets how pixels are computed. It must be known whether the data are meshes or grids.
 void set_method(const OptionWords& words, RenderOptions& options);
-/// Without options of devices: no backends, which means the CPU.
+/// The settings of devices. Without options for devices there are no backends, which means the CPU.
 DeviceSettings device_settings(const OptionWords& words, bool for_volume);
-/// Jobs of several ranks.
+/// Sets the options for jobs of several ranks.
 void set_ranks(const OptionWords& words, RenderOptions& options);
 
-/// Images, films and standard output.
+/// Sets the options for images, films and standard output.
 void set_outputs(const OptionWords& words, RenderOptions& options);
-/// The contents of images: deep samples, layers, annotation. The method must already be set.
+/// Sets the contents of images: deep samples, layers, annotation. The method must already be set.
 void set_pictures(const OptionWords& words, RenderOptions& options);
 
-/// `image` has the background and colours of the image.
+/// The annotation. `image` contains the background and the colours of the image.
 AnnotationOptions annotation_options(const OptionWords& words, const ImageFileOptions& image);
 
 }  // namespace tessera::api

@@ -10,8 +10,8 @@
 
 namespace tessera::api {
 
-/// A binary tree of boxes, halved at the median of their centres, that finds the boxes that meet a given box in about
-/// log n steps each. Built in n log n.
+/// A binary tree of boxes, split at the median of their centres. It finds the boxes that intersect a given box, in
+/// about log n steps for each box found. Building the tree takes time in proportion to n log n.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const scene::Box> boxes);
@@ -27,7 +27,7 @@ class BoxTree {
 
   std::span<const scene::Box> boxes_;
   std::vector<std::uint32_t> order_;
-  std::vector<scene::Box> nodes_;  ///< a heap: node i has children 2 i + 1 and 2 i + 2
+  std::vector<scene::Box> nodes_;  ///< nodes in heap order: node i has the children 2 i + 1 and 2 i + 2
 };
 
 }  // namespace tessera::api

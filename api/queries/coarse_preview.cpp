@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t least_samples = 8, most_samples = std::uint64_t{1} << 26;
 
-/// A data set of samples, with the names of the data that it represents.
+/// Makes a data set of samples that has the names of the data that it represents.
 Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dataset::State& whole, int threads) {
   auto state = std::make_shared<Dataset::State>();
   state->samples = std::move(samples);
@@ -47,7 +47,7 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
   return StateAccess::make(std::move(state));
 }
 
-/// A grid of samples in the encoding of PreviewSamples.
+/// Makes a source of samples from a grid in the encoding of PreviewSamples.
 std::shared_ptr<const scene::SampleSource> source_of(const api::PreviewSamples& samples,
                                                      const std::array<double, 2>& range, GridGeometry geometry,
                                                      const std::string& field) {

@@ -70,7 +70,7 @@ std::vector<Share> shares_of(const Dataset& dataset, const std::optional<View>& 
   std::optional<Window> window;
   if (seen) window.emplace(*seen);
   const bool clipped = !data.clip.empty();
-  const auto [low, high] = data.facts.scalar_range;  // after the selection
+  const auto [low, high] = data.facts.scalar_range;  // the range after the selection
   std::vector<Share> shares;
   for (const scene::FieldSample& sample : data.field_samples().samples) {
     if (data.of_all && !(sample.value >= low && sample.value <= high)) continue;
@@ -118,7 +118,7 @@ Histogram histogram(const Dataset& dataset, const HistogramOptions& options) {
   if (options.logarithmic && !(found.range[0] > 0)) found.range[0] = smallest_positive(dataset, shares, found.range[1]);
 
   const auto scale = [&](double value) { return options.logarithmic ? std::log10(value) : value; };
-  // Halved, so that they do not overflow.
+  // Both numbers are halved so that they do not overflow.
   const double low = scale(found.range[0]) / 2, width = scale(found.range[1]) / 2 - low;
   found.shares.assign(options.bins, 0);
   double inside = 0, outside = 0;
@@ -145,7 +145,7 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
   std::vector<Share> shares = shares_of(dataset, seen);
   if (shares.empty()) return std::vector<double>(fractions.size(), std::numeric_limits<double>::quiet_NaN());
   std::ranges::stable_sort(shares, {}, &Share::value);
-  std::vector<double> below;  // cumulative, including each share
+  std::vector<double> below;  // cumulative sums of the shares, each including its own share
   below.reserve(shares.size());
   double sum = 0;
   for (const Share& share : shares) below.push_back(sum += share.volume);

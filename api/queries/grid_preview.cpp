@@ -11,7 +11,7 @@
 namespace tessera::api {
 namespace {
 
-/// The number of samples along each axis, about in proportion to `n`, so that their product is at most `samples`.
+/// Returns the number of samples along each axis, about in proportion to `n` and with a product of at most `samples`.
 GridIndex fewer(const GridIndex& n, std::uint64_t samples, std::int64_t least) {
   const auto counts = [&](double factor) {
     GridIndex m{};
@@ -29,14 +29,14 @@ GridIndex fewer(const GridIndex& n, std::uint64_t samples, std::int64_t least) {
   return counts(small);
 }
 
-/// The index among m coarse samples to which sample i of n contributes.
+/// Returns the index of the coarse sample, out of m, to which sample i of n contributes.
 std::int64_t nearest(std::int64_t i, std::int64_t n, std::int64_t m, bool cells) {
   if (m == n) return i;
   if (cells) return std::min(i * m / n, m - 1);
   return n > 1 ? (2 * i * (m - 1) + (n - 1)) / (2 * (n - 1)) : 0;
 }
 
-/// The geometry with fewer lattice points, evenly spaced in lattice indices.
+/// Returns the geometry with fewer lattice points, which are evenly spaced in lattice indices.
 GridGeometry geometry_of(const GridGeometry& g, const GridIndex& points) {
   GridGeometry coarse = g;
   coarse.points = points;

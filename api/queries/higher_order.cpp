@@ -20,7 +20,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The same view, reduced to the number of pixels that are compared.
+/// Returns the view with its image reduced to the number of pixels that are compared.
 View small(View view) {
   constexpr double most_pixels = 1 << 16;
   const double shrink = std::sqrt(most_pixels / (static_cast<double>(view.size.width) * view.size.height));
@@ -29,8 +29,8 @@ View small(View view) {
   return view;
 }
 
-/// The exponent p in [1/2, 1] for which errors in proportion to t^p explain the differences d1 and d2 between images of
-/// tolerances t0 > t1 > t2.
+/// Returns the exponent p in [1/2, 1] for which errors in proportion to t^p explain the differences between images of
+/// tolerances t0 > t1 > t2: d1 between the first two and d2 between the last two.
 double power_of(double t0, double t1, double t2, double d1, double d2) {
   double low = 0.5, high = 1;  // faster convergence is treated as p = 1
   for (int halvings = 0; halvings < 30; ++halvings) {
@@ -45,7 +45,7 @@ double power_of(double t0, double t1, double t2, double d1, double d2) {
 struct Level {
   double tolerance;
   std::uint64_t tets;
-  Image picture;  ///< on the rank that assembles
+  Image picture;  ///< on the rank that assembles the image; empty on other ranks
 };
 
 /// The difference of two images.
@@ -53,7 +53,7 @@ struct Difference {
   double largest = 0, root_mean_square = 0;
 };
 
-/// Reads, renders and compares: the steps of read_for_accuracy().
+/// Reads, renders and compares data of several tolerances: the steps of read_for_accuracy().
 class HigherOrderLevels {
  public:
   HigherOrderLevels(const std::function<Dataset(const ReadOptions&)>& open,
@@ -65,12 +65,12 @@ class HigherOrderLevels {
     settings_.threads = settings.threads;
     settings_.memory_bytes = settings.memory_bytes;
     settings_.ranks = settings.ranks;
-    settings_.ranks.exchange = Exchange::segments;  // gives the same tolerance for any number of ranks
-    settings_.integrator.accuracy = 4e-6;           // about the best that float lanes reach
+    settings_.ranks.exchange = Exchange::segments;  // so that the result is the same tolerance for any number of ranks
+    settings_.integrator.accuracy = 4e-6;           // about the best accuracy of single precision
   }
 
-  /// Renders the data. With fewer than twice the tets of the last level they replace that level, since only a few cells
-  /// would differ.
+  /// Renders the data as a new level. If they have fewer than twice as many tets as the last level, the new level
+  /// replaces that level, since only a few cells differ.
   void draw(const Dataset& data) {
     const HigherOrderCells& cells = data.higher_order_cells();
     if (!levels_.empty() && cells.tets < 2 * levels_.back().tets) levels_.pop_back();
@@ -78,7 +78,8 @@ class HigherOrderLevels {
     if (levels_.size() >= 2) fit();
   }
 
-  /// Finds the error of the only level by two levels with larger tolerances and at most half of the tets.
+  /// Estimates the error of the only level by comparison with two levels of larger tolerances, each with at most half
+  /// of the tets.
   void compare_with_coarser(ReadOptions options) {
     for (const double times : {4, 16}) {
       options.higher_order_tolerance = times * levels_.back().tolerance;
@@ -91,10 +92,11 @@ class HigherOrderLevels {
   }
 
   [[nodiscard]] std::size_t pictures() const { return levels_.size(); }
-  /// Of the last level; infinite if no images differ.
+  /// Error of the last level; infinite if there are no two images to compare.
   [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] double tolerance_for(double error) const {
-    const double power = levels_.size() < 3 ? 0.75 : power_;  // midway, as long as the power is unknown
+    const double power = levels_.size() < 3 ? 0.75 : power_;  // the middle of the possible range while the power is
+                                                              // unknown
     return levels_.back().tolerance * std::pow(error / error_, 1 / power);
   }
 
@@ -105,16 +107,16 @@ class HigherOrderLevels {
     return session.render(scene_->first, scene_->second).image;
   }
 
-  /// The last level whose tolerance is at least four times larger, or the first level. At closer tolerances the worst
-  /// tets of both levels may be the same.
+  /// Returns the last level whose tolerance is at least four times larger or, if there is none, the first level. The
+  /// worst tets of two levels with closer tolerances may be the same.
   [[nodiscard]] const Level& coarser_than(const Level& level) const {
     const auto is_apart = [&](const Level& of) { return of.tolerance >= 3.99 * level.tolerance; };
     const auto found = std::find_if(levels_.rbegin(), levels_.rend(), is_apart);
     return found == levels_.rend() ? levels_.front() : *found;
   }
 
-  /// Fits the error as a power of the tolerance to three images. With two images the power is its lower bound, which is
-  /// conservative.
+  /// Fits a power of the tolerance to the differences of three images. With two images, the power is set to its lower
+  /// bound, which is conservative.
   void fit() {
     const Level &last = levels_.back(), &middle = coarser_than(last), &first = coarser_than(middle);
     const Difference difference_of_last = difference(middle.picture, last.picture);
@@ -131,7 +133,7 @@ class HigherOrderLevels {
     error_ = apart > 1 ? by_chance * difference_of_last.largest / (std::pow(apart, power_) - 1) : infinite;
   }
 
-  /// The same result on all ranks.
+  /// Returns the difference of two images, with the same result on all ranks.
   [[nodiscard]] Difference difference(const Image& a, const Image& b) const {
     const int assembler =
         assign_roles(communicator_.size(), settings_.ranks.projectors, settings_.ranks.compositors).assembler();
@@ -155,7 +157,8 @@ class HigherOrderLevels {
   const std::function<View(const Dataset&)>& view_;
   Settings settings_;
   const Communicator& communicator_;
-  std::optional<std::pair<View, TransferFunction>> scene_;  ///< of the first level, used for all
+  std::optional<std::pair<View, TransferFunction>> scene_;  ///< view and transfer function of the first level, used for
+                                                            ///< all levels
   std::vector<Level> levels_;
   double power_ = 0.5, error_ = infinite;  ///< the error is proportional to tolerance^power
 };

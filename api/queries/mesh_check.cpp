@@ -41,7 +41,7 @@ double longest_edge(const Corners& c) {
   return longest;
 }
 
-/// Six times the signed volume over the cube of the longest edge.
+/// Six times the signed volume, divided by the cube of the longest edge.
 double relative_determinant(const Corners& c) {
   const double length = longest_edge(c);
   if (!(length > 0)) return 0;
@@ -49,7 +49,7 @@ double relative_determinant(const Corners& c) {
   return glm::dot(glm::cross(a, b), d);
 }
 
-/// Longest edge over smallest height.
+/// Longest edge divided by the smallest height.
 double aspect_ratio(const Corners& c, double determinant) {
   const double length = longest_edge(c);
   double most_area = 0;  // twice the area of a face, over length^2
@@ -60,8 +60,8 @@ double aspect_ratio(const Corners& c, double determinant) {
   return most_area / std::abs(determinant);
 }
 
-/// Whether two tets overlap by more than `margin` along every axis (separating axis theorem for convex bodies: normals
-/// of faces and cross products of edges).
+/// Whether two tets overlap by more than `margin` along every axis of the separating axis theorem for convex bodies:
+/// the normals of faces and the cross products of edges.
 bool interiors_meet(const Corners& a, const Corners& b, double margin) {
   const glm::dvec3 origin = a[0];
   Corners p, q;
@@ -121,7 +121,7 @@ double common_area(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b,
 }
 
 struct Face {
-  std::array<std::uint32_t, 3> points;  ///< sorted; coincident points have one name
+  std::array<std::uint32_t, 3> points;  ///< sorted; points at the same position have the same number
   std::uint32_t tet;
   std::uint8_t opposite;  ///< the corner that is not in the face
 };
@@ -144,12 +144,13 @@ class Check {
   MeshCheck take() { return std::move(result_); }
 
  private:
-  /// The intervals are roughly the parts' shares of the time, measured for a mesh of 1.6 million tets.
+  /// Begins a part of the check whose progress is from `begin` to `end`. The intervals are approximately the shares of
+  /// the time that the parts took for a mesh of 1.6 million tets.
   void begin_part(double begin, double end) {
     part_begin_ = begin, part_length_ = end - begin;
     report(0, 1);
   }
-  /// Reports that `n` of the part's `count` steps are done.
+  /// Reports that `n` of the `count` steps of the part are done.
   void report(std::size_t n, std::size_t count) const {
     constexpr std::size_t steps = 1 << 15;
     if (progress_ && n % steps == 0)
@@ -159,7 +160,8 @@ class Check {
     const Corners c = corners_of(mesh_, tet);
     return {mesh_.cell_of(tet), mesh_.cell_of(other), 0.25 * (c[0] + c[1] + c[2] + c[3]), 0};
   }
-  /// A cell from which several tets were made is listed once, whatever the count.
+  /// Adds a place to the list unless its cell is already listed. A cell from which several tets were made is listed
+  /// once; `count` counts each tet.
   static void list(MeshCheck::Finding& finding, const MeshCheck::Place& place) {
     if (finding.places.size() == MeshCheck::most_places) return;
     for (const MeshCheck::Place& p : finding.places)
@@ -171,7 +173,7 @@ class Check {
     ++finding.count;
   }
 
-  /// Names every point by the first point at its position.
+  /// Replaces the number of every point by that of the first point at the same position.
   void name_points() {
     std::vector<std::uint8_t> used(mesh_.positions.size(), 0);
     for (const scene::Tet& t : mesh_.tets)
@@ -214,7 +216,7 @@ class Check {
       result_.slivers_1e6 += aspect > 1e6 ? 1 : 0;
       worst.emplace_back(-aspect, t);
       if (worst.size() < 4096) continue;
-      // Keep more than are listed: several may belong to one cell.
+      // More slivers are kept than will be listed, since several may belong to one cell.
       std::nth_element(worst.begin(), worst.begin() + 1024, worst.end());
       worst.resize(1024);
     }
@@ -230,15 +232,15 @@ class Check {
     return {mesh_.positions[f.points[0]], mesh_.positions[f.points[1]], mesh_.positions[f.points[2]]};
   }
 
-  /// The side of a face on which its tet is: -1, 1, or 0 if that is undecidable.
+  /// The side of a face on which its tet is: -1 or 1; 0 if this cannot be decided.
   [[nodiscard]] int side(const Face& f) const {
     const auto [a, b, c] = triangle(f);
     const double determinant = relative_determinant({a, b, c, mesh_.positions[mesh_.tets[f.tet][f.opposite]]});
     return determinant > flat_determinant ? 1 : determinant < -flat_determinant ? -1 : 0;
   }
 
-  /// Sorts all faces; those that belong to only one tet are the boundary. Pairs of tets on one side of a face are
-  /// folds.
+  /// Sorts all faces; those that belong to only one tet are the boundary. Two tets that share a face and are on the
+  /// same side of it are a fold.
   void match_faces() {
     std::vector<Face> faces;
     faces.reserve(4 * mesh_.tets.size());
@@ -323,8 +325,8 @@ class Check {
     return interiors_meet(p, q, tolerance * std::min(longest_edge(p), longest_edge(q)));
   }
 
-  /// Starts from folds and from tets that a boundary face's tet meets, and goes from each overlapping pair to its
-  /// neighbours.
+  /// Starts from folds and from the tets that overlap a tet with a boundary face. Continues from each overlapping pair
+  /// to the neighbours of its tets.
   void find_overlaps() {
     std::vector<scene::Box> boxes;
     boxes.reserve(mesh_.tets.size());
@@ -337,7 +339,7 @@ class Check {
     const auto consider = [&](std::uint32_t a, std::uint32_t b) {
       if (a == b || a == none || b == none || result_.more_overlaps) return;
       if (a > b) std::swap(a, b);
-      // Tets on opposite sides of a common face do not overlap; on the same side the pair is already a seed.
+      // Tets on opposite sides of a common face do not overlap. Tets on the same side are already a starting pair.
       if (!overlap(a, b) || !seen.insert(std::uint64_t{a} << 32 | b).second) return;
       const std::uint64_t one = mesh_.cell_of(a), other = mesh_.cell_of(b);
       const std::uint64_t first = std::min(one, other), second = std::max(one, other);
@@ -368,7 +370,7 @@ class Check {
   double part_begin_ = 0, part_length_ = 0;
   MeshCheck result_;
   std::vector<std::uint32_t> name_, neighbor_;
-  std::vector<std::uint8_t> solid_;  ///< neither flat nor a sliver beyond the tolerance for overlaps
+  std::vector<std::uint8_t> solid_;  ///< for each tet: neither flat nor a sliver beyond the tolerance for overlaps
   std::vector<Face> boundary_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> seeds_;
 };

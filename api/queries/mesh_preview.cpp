@@ -13,7 +13,8 @@
 namespace tessera::api {
 namespace {
 
-constexpr double reach = 0.5;  ///< next to a tet, in units of the sample spacing
+constexpr double reach = 0.5;  ///< largest distance from a tet at which samples have values, in units of the sample
+                               ///< spacing
 
 struct Plane {
   glm::dvec3 inward;  ///< unit length
@@ -23,7 +24,7 @@ struct Plane {
 /// One tet in the grid of samples; lengths are in units of the sample spacing.
 class TetOfSamples {
  public:
-  /// `value`: 0 to 1 over the range.
+  /// `value` contains the values of the corners, from 0 to 1 over the range.
   TetOfSamples(const std::array<glm::dvec3, 4>& corner, const std::array<double, 4>& value) {
     const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], c = corner[3] - corner[0];
     const double volume = glm::dot(a, glm::cross(b, c));
@@ -43,7 +44,7 @@ class TetOfSamples {
     }
   }
   [[nodiscard]] bool flat() const { return flat_; }
-  /// Distance to the nearest face, positive inside the tet, negative outside.
+  /// Distance to the nearest face plane: positive inside the tet, negative outside.
   [[nodiscard]] double inside(const glm::dvec3& p) const {
     double least = HUGE_VAL;
     for (const Plane& plane : planes_) least = std::min(least, glm::dot(plane.inward, p) - plane.at);

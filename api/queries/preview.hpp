@@ -12,24 +12,27 @@
 
 namespace tessera::api {
 
-/// Samples of a mesh on a regular grid, encoded so that the smaller of two is the one to keep, in whatever order they
-/// come from threads and ranks: 1 bit whether the sample is outside its tet, 31 bits for the tet, and 32 bits for the
-/// float of its value, which is between 0 and 1. All ones: none.
+/// Samples of a mesh on a regular grid. They are encoded so that of two values for one sample the smaller one is kept,
+/// independently of the order in which threads and ranks compute them. One bit states whether the sample is outside its
+/// tet, 31 bits contain the number of the tet, and 32 bits contain the value as a float between 0 and 1. All bits are
+/// set if there is no value.
 using PreviewSamples = std::vector<std::uint64_t>;
 inline constexpr std::uint64_t no_sample = ~std::uint64_t{0};
 
-/// A regular grid over a box with at most `samples` points.
+/// Returns a regular grid over a box, with at most `samples` points.
 GridGeometry preview_geometry(const Box& box, std::uint64_t samples);
 
-/// Samples of a part of a mesh, whose tets have the indices `global_tet` in the whole mesh (empty: their own). `range`
-/// is that of the whole. A point outside all tets that is no further than half of the sample spacing from the planes of
-/// all faces of one tet has that tet's value there, clamped to the range of its corners; so the volume is correct on
-/// average, even of parts thinner than that distance. Incomplete if `stop` is requested.
+/// Samples a part of a mesh. `global_tet` contains the indices of the part's tets in the whole mesh; if it is empty,
+/// the part is the whole mesh. `range` is the range of the whole mesh. A point outside all tets whose distance to the
+/// planes of all faces of one tet is at most half of the sample spacing has that tet's value at the point, clamped to
+/// the range of the corners. The volume is therefore correct on average, even for parts thinner than that distance. The
+/// result is incomplete if `stop` is requested.
 PreviewSamples preview_samples(const scene::TetMeshView& part, std::span<const std::uint64_t> global_tet,
                                const std::array<double, 2>& range, const GridGeometry& geometry,
                                const std::stop_token& stop);
 
-/// Fewer samples of a grid over the same box, each the mean of those nearest to it; null if `stop` is requested.
+/// Returns a grid over the same box with fewer samples, each the mean of the samples nearest to it. Returns null if
+/// `stop` is requested.
 std::shared_ptr<const scene::SampleSource> coarser(const scene::SampleSource& source, std::uint64_t samples,
                                                    const std::stop_token& stop);
 

@@ -31,7 +31,7 @@ struct Depths {
   double begin = infinity, end = -infinity;
 };
 
-/// A ray through a data set: what any interval of it shows, and the field along it.
+/// A ray through a data set. It provides the light of any interval, and the field along the ray.
 class ProbedRay {
  public:
   ProbedRay(const View& view, PixelIndex pixel) : view_(view), pixel_(pixel), eye_(view.camera, view.size) {}
@@ -39,12 +39,13 @@ class ProbedRay {
   ProbedRay(const ProbedRay&) = delete;
   ProbedRay& operator=(const ProbedRay&) = delete;
 
-  /// From where the ray first enters the data to where it last leaves them; begin > end if it misses them.
+  /// The depths where the ray first enters the data and where it last leaves them; begin > end if the ray misses the
+  /// data.
   [[nodiscard]] virtual Depths depths() const = 0;
   [[nodiscard]] virtual double value(double depth) const = 0;
 
   [[nodiscard]] ReferencePixel all() const { return pixel_with(view_.camera); }
-  /// Opacity of the visible matter between two depths.
+  /// Opacity of the ray between two depths.
   [[nodiscard]] double opacity(double near, double far) const {
     near = std::max(near, eye_.nearest()), far = std::min(far, eye_.farthest());
     if (!(near < far)) return 0;
@@ -52,7 +53,8 @@ class ProbedRay {
     camera.clipping_range = {near, far};
     return pixel_with(camera).a;
   }
-  /// The value at `depth` or, if rounding puts that outside the cells, just in front of it or behind it.
+  /// Returns the point at `depth`. If this place is outside the cells because of rounding, the value is that just in
+  /// front of it or behind it.
   [[nodiscard]] RayPoint point(double depth) const {
     const reference::View::Ray ray = eye_.ray(x(), y());
     const double nudge = 1e-7 * (1 + std::abs(depths().end - depths().begin));
@@ -72,7 +74,7 @@ class ProbedRay {
   reference::View eye_;
 };
 
-/// A ray through a mesh; `near` contains the tets that it may meet.
+/// A ray through a mesh. `near` contains the tets that the ray may meet.
 class RayInMesh final : public ProbedRay {
  public:
   RayInMesh(scene::TetMesh near, const View& view, PixelIndex pixel, const TransferFunction& function,
@@ -184,20 +186,20 @@ class RayInGrid final : public ProbedRay {
   const Settings& settings_;
 };
 
-/// A tet that a ray meets, with its geometry.
+/// A tet that a ray meets, with the geometry of the tet.
 struct RayTet {
-  std::uint64_t number;  ///< in the whole mesh
+  std::uint64_t number;  ///< number of the tet in the whole mesh
   std::array<glm::dvec3, 4> positions;
-  std::array<double, 4> scalars;  ///< of its corners; cell data: only the first is used
+  std::array<double, 4> scalars;  ///< values at the corners; for cell data only the first is used
 };
 static_assert(sizeof(RayTet) == 136);
 
-/// The tets of a mesh that the ray passes through, in the order of the whole mesh.
+/// Returns the tets of a mesh through which the ray passes, in the order of the whole mesh.
 std::vector<RayTet> tets_on_ray(const Dataset::State& data, const View& view, PixelIndex pixel) {
   const std::vector<std::uint32_t> near = api::tets_near_ray(data.mesh, view, pixel);
   const scene::TetMesh subset = scene::subset(data.mesh, near);
   Camera camera = view.camera;
-  camera.clipping_range.reset();  // cells beyond it determine which faces are the mesh's boundary
+  camera.clipping_range.reset();  // cells beyond the range are needed to find the boundary faces of the mesh
   const TransferFunction any({Knot{}});
   std::vector<std::size_t> met;
   for (const auto& s : reference::Reference(subset, camera, view.size, any).segments(pixel.x + 0.5, pixel.y + 0.5))
@@ -245,8 +247,8 @@ scene::TetMesh mesh_of(std::span<const RayTet> tets, Association association) {
   return mesh;
 }
 
-/// The depth, between two given ones, where the opacity from the eye reaches `wanted`. `before`: the opacity at
-/// `begin`.
+/// Returns the depth between `begin` and `end` where the opacity accumulated from the eye reaches `wanted`. `before` is
+/// the opacity at `begin`.
 double depth_of(const ProbedRay& ray, double wanted, double begin, double end, double before) {
   double low = begin, high = end;
   for (int halving = 0; halving < 48; ++halving) {
@@ -275,7 +277,7 @@ RayProbe probed(const ProbedRay& ray, std::size_t samples) {
   if (!found.first) return found;
   const auto reach = [&](double wanted) -> std::optional<RayPoint> {
     const auto at = std::ranges::lower_bound(found.opacity, wanted);
-    if (at == found.opacity.end()) return std::nullopt;  // on a surface behind the data
+    if (at == found.opacity.end()) return std::nullopt;  // `wanted` is reached on a surface behind the data
     const auto i = static_cast<std::size_t>(at - found.opacity.begin());
     if (i == 0) return ray.point(std::max(found.pixel.z, found.depth[0]));
     return ray.point(depth_of(ray, wanted, found.depth[i - 1], found.depth[i], found.opacity[i - 1]));

@@ -15,8 +15,8 @@
 namespace tessera::api {
 namespace {
 
-/// Half-spaces bounded by planes through the ray, and the one behind the eye, that contain a point: a tet whose corners
-/// are all in one of them does not meet the ray, wherever the eye is.
+/// Bits for the half-spaces that contain a point: four bounded by planes through the ray, and the one behind the eye. A
+/// tet whose corners are all in one of these half-spaces does not meet the ray, wherever the eye is.
 constexpr std::uint8_t left = 1, right = 2, above = 4, below = 8, behind = 16;
 
 class Sides {
@@ -35,7 +35,7 @@ class Sides {
     const glm::dvec3 from = p - position_;
     const double depth = glm::dot(from, basis_.forward), scale = perspective_ ? depth : 1;
     const double u = glm::dot(from, basis_.right) - x_ * scale, v = glm::dot(from, basis_.up) - y_ * scale;
-    // Larger than the rounding errors here and of rays (reference/view.hpp).
+    // The margin is larger than the rounding errors of this computation and of the rays (reference/view.hpp).
     const double margin = 1e-6 * unit_ * std::abs(scale) + 1e-10 * (glm::length(from) + glm::length(p));
     std::uint8_t bits = 0;
     if (u < -margin) bits |= left;
@@ -50,7 +50,7 @@ class Sides {
   glm::dvec3 position_;
   ViewBasis basis_;
   bool perspective_;
-  double unit_, x_, y_;  ///< of a pixel and of the ray, in world units; perspective: at depth 1
+  double unit_, x_, y_;  ///< size of a pixel and position of the ray, in world units; in perspective at depth 1
 };
 
 }  // namespace

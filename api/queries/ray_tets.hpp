@@ -10,11 +10,12 @@
 
 namespace tessera::api {
 
-/// The tets of a mesh that the ray of a pixel may meet, in ascending order: all that it meets, and few others. One pass
-/// over points and tets on all cores, without stored data: a mesh of 12 million tets takes about a tenth of a second.
+/// Returns all tets of a mesh that the ray of a pixel meets and a few others, in ascending order. The function makes
+/// one pass over points and tets on all cores and needs no stored data. For a mesh of 12 million tets it takes about a
+/// tenth of a second.
 std::vector<std::uint32_t> tets_near_ray(const scene::TetMeshView& mesh, const View& view, PixelIndex pixel);
 
-/// The same for triangles; points and values are unchanged.
+/// Does the same for triangles. Points and values are not changed.
 TriangleMesh triangles_near_ray(const TriangleMesh& mesh, const View& view, PixelIndex pixel);
 
 }  // namespace tessera::api

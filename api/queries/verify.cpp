@@ -26,10 +26,10 @@ namespace {
 using reference::Suspicion;
 using reference::SuspicionMap;
 
-/// Differences below half the bound are not suspicious; without a bound, those below half the default accuracy.
+/// The smallest suspicious difference: half of the bound or, without a bound, half of the default accuracy.
 double least_suspicious(const std::optional<double>& bound) { return bound.value_or(Integrator().accuracy) / 2; }
 
-/// Collects suspects of an image, to check `count` of its pixels.
+/// Collects the suspicious pixels of an image, from which `count` pixels are chosen.
 class Collector {
  public:
   Collector(scene::ImageSize size, std::size_t count) : size_(size), most_(count) {}
@@ -51,8 +51,8 @@ class Collector {
   reference::Suspects found_;
 };
 
-/// Pixels with a large error bound that were not cast again are the least certain; those that were cast again count as
-/// exact.
+/// Pixels with a large error bound whose rays were not cast again in double precision are the least certain. Pixels
+/// whose rays were cast again are assumed to be exact.
 SuspicionMap suspicion_of(std::span<const float> error_bounds, double tolerance) {
   SuspicionMap map(error_bounds.begin(), error_bounds.end());
   for (float& bound : map)
@@ -60,14 +60,14 @@ SuspicionMap suspicion_of(std::span<const float> error_bounds, double tolerance)
   return map;
 }
 
-/// Casts the likeliest suspects of a grid's image again, voxel by voxel in double precision. The difference is the best
-/// available estimate of a pixel's error.
+/// Casts the rays of the most suspicious pixels of a grid's image again, voxel by voxel in double precision. The
+/// difference is the best available estimate of a pixel's error.
 SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                             const scene::TransferFunction& function, const volume::RenderSettings& settings,
                             const reference::Suspects& suspects, std::size_t count) {
   std::vector<std::array<int, 2>> pixels;
   for (const reference::ChosenPixel& p : reference::by_turns(suspects, count)) pixels.push_back({p.at.x, p.at.y});
-  // Neighbours share the samples that they read.
+  // Neighbouring pixels share the samples that their rays read.
   std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) {
     const auto place = [](const auto& p) { return std::array{p[1] / 32, p[0] / 32, p[1], p[0]}; };
     return place(a) < place(b);
@@ -152,7 +152,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   collector.add(Suspicion::tie, scene.tie);
   collector.add(Suspicion::estimate, suspicion_of(error_bounds, least));
   reference::Suspects found = collector.take();
-  // Images of rectilinear grids are already rendered by that method.
+  // Images of rectilinear grids are already rendered voxel by voxel in double precision.
   if (source.geometry().rectilinear() || !promised_error(settings, DataKind::grid)) return found;
   const SuspicionMap again = second_opinion(image, source, camera, transfer_function, settings, found, count);
   found[static_cast<std::size_t>(Suspicion::estimate)] = reference::ranked(again, image.size, count);
@@ -166,7 +166,7 @@ double layer_bound(const std::optional<double>& promised) {
 
 namespace {
 
-/// Judges the image and, if there are any, its layers.
+/// Compares the image and, if there are any, its layers with the reference.
 template <class Reference>
 Verified judged(const scene::Image& image, const Layers& layers, const Reference& reference,
                 const std::optional<double>& promised, std::size_t count, const reference::Suspects& where,

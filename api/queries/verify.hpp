@@ -18,18 +18,19 @@
 namespace tessera::api {
 
 /// The largest error that is promised, in linear RGBA: with `exact` 2e-5 for meshes and 1e-5 for grids, with
-/// `automatic` the requested accuracy. None for methods that take steps or samples, with the scanline rasterizer, or
-/// composited as printed (gl-fragment): their error is only reported.
+/// `automatic` the requested accuracy. None for other integrators, for the scanline rasterizer, and for compositing as
+/// published (gl-fragment): their errors are only reported.
 std::optional<double> promised_error(const Settings& settings, DataKind data);
 
-/// Where to check a finished image if `count` of its pixels are judged: where the image itself, the scene and the
-/// frame's own estimates make it least certain (reference/suspicion.hpp). Depends only on the arguments, except the
-/// number of threads, so that a second run, on any number of ranks, checks the same pixels.
+/// Chooses the pixels of a finished image to check, if `count` pixels are checked: those that are least certain
+/// according to the image, the scene and the frame's own estimates (reference/suspicion.hpp). The result depends only
+/// on the arguments and not on the number of threads, so that a second run, on any number of ranks, checks the same
+/// pixels.
 reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const Settings& settings,
                              std::size_t count);
 
-/// `error_bounds`: by pixel, from volume::Renderer::render; may be empty.
+/// `error_bounds` contains a bound for each pixel, from volume::Renderer::render(); it may be empty.
 reference::Suspects suspects(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const volume::RenderSettings& settings,
                              std::span<const float> error_bounds, std::size_t count);
@@ -40,17 +41,17 @@ struct Verified {
   reference::LayerVerification layers;
 };
 
-/// The layers of an image, and how they were cut; none: there are no layers.
+/// The layers of an image and how they were cut; empty if there are no layers.
 struct Layers {
   std::span<const scene::Image> images{};
   std::optional<Peel> peel{};
 };
 
-/// The largest error of a layer, in linear RGBA: 1e-5, or the promise for the image if that is less.
+/// The largest promised error of a layer, in linear RGBA: 1e-5 or, if it is smaller, the promised error of the image.
 double layer_bound(const std::optional<double>& promised);
 
-/// Checks `count` pixels of a finished image against the reference: a third at random, the rest from its suspects; the
-/// same pixels of its layers.
+/// Checks `count` pixels of a finished image against the reference: a third of them random, the others suspicious. The
+/// same pixels of the layers are checked.
 Verified verify_all(const scene::Image& image, const Layers& layers, const frame::UncutMesh& mesh,
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                     const Settings& settings, std::size_t count);
@@ -58,7 +59,7 @@ Verified verify_all(const scene::Image& image, const Layers& layers, const scene
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                     const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count);
 
-/// The same for images without layers.
+/// Does the same for an image without layers.
 reference::Verification verify(const scene::Image& image, const frame::UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const Settings& settings,
                                std::size_t count);
