@@ -8,7 +8,7 @@
 
 namespace tessera::apps {
 
-/// A subcommand; its options are those rows of the table that have its trait.
+/// A subcommand. Its options are the rows of the option table that have its trait.
 struct CommandRow {
   Trait trait;
   std::string_view name, description;
@@ -18,10 +18,10 @@ struct CommandRow {
 /// All commands, in the order of the help.
 std::span<const CommandRow> command_rows();
 
-/// Null for any other word.
+/// Returns the command of this name; null for any other word.
 const CommandRow* command_named(std::string_view name);
 
-/// Whether `--help-all` has more options than `--help`.
+/// Whether `--help-all` shows more options than `--help`.
 inline bool has_topics(const CommandRow& command) {
   return command.trait == Trait::render || command.trait == Trait::serve;
 }

@@ -20,7 +20,8 @@
 namespace tessera::apps {
 namespace {
 
-/// A pipe to a thread, on which a signal handler reports the signal. The thread may do what a handler may not.
+/// A pipe through which the signal handler reports the signal to a thread. The thread may call functions that a signal
+/// handler must not call.
 std::array<int, 2> signal_pipe{-1, -1};
 std::atomic<int> ending = 0;  ///< the number of the first signal
 
@@ -56,7 +57,7 @@ void wait_for_interruption() {
 }  // namespace
 
 void answer_interruption() {
-  if (::pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;  // signals then end the process as usual
+  if (::pipe2(signal_pipe.data(), O_CLOEXEC) != 0) return;  // without the pipe, signals end the process as usual
   try {
     std::thread(wait_for_interruption).detach();
   } catch (const std::exception&) {

@@ -42,20 +42,20 @@
 namespace tessera::apps {
 namespace {
 
-/// Prints an error as one line, even if file names or messages contain line breaks, with options instead of settings.
-/// Prints nothing if the run's line has already been printed.
+/// Prints an error as one line, even if file names or messages contain line breaks, with names of options instead of
+/// settings. Prints nothing if the run's error has already been printed.
 int fail(const Error& error) {
   yield_to_interruption();
   std::string line = "tessera: " + printable(with_stream_names(with_options(error.what())));
   while (line.ends_with(' ')) line.pop_back();
-  // A name or a value from a file may be as long as the file.
+  // A name or a value that was read from a file may be as long as the file.
   constexpr std::size_t longest = 3000, half = 1000;
   if (line.size() > longest) line = line.substr(0, half) + " ... " + line.substr(line.size() - half);
   Job::print_once(line);
   return static_cast<int>(error.code());
 }
 
-/// Whether a rectilinear grid, which opens as a volume, should be converted as a mesh.
+/// Whether a rectilinear grid, which is opened as a volume by default, should be converted as a mesh.
 bool to_mesh(const InputFile& input, const std::filesystem::path& output) {
   const auto extension = output.extension();
   return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && input.opens_as_mesh();
@@ -107,15 +107,15 @@ ExitCode run(int argc, char** argv, Job& job) {
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
     }
     ReadOptions options = read_options(words, is_grid);
-    options.shape = !is_grid;  // as for render without options
+    options.shape = !is_grid;  // as `render` does without options
     info(input, first, options, words.given("json"), words.given("check"));
   }
   if (command == Trait::convert) {
-    if (is_time_series(input)) require_input(input);  // reports a list whose files are missing
+    if (is_time_series(input)) require_input(input);  // reports an error if the files of a list are missing
     const InputFile file(input);
     if (is_grid_input(words, file) && !to_mesh(file, output)) {
       ReadOptions options = read_options(words, true);
-      options.blocks.clear();  // for volumes the option is the side of a block
+      options.blocks.clear();  // for volumes the option is the side length of a block
       convert_grid(file, output, options, words.count("block", 8, 1024).value_or(64), words.given("quiet"));
     } else {
       convert_mesh(file, output, read_options(words, false), words.count("subdivide", 0, 8).value_or(0),
@@ -140,12 +140,12 @@ using tessera::Error;
 using tessera::ErrorCode;
 using tessera::apps::ExitCode;
 
-/// The user's view of an exception.
+/// Returns the current exception as an error for the user.
 Error as_error() {
   try {
     throw;
   } catch (const tessera::OutputFault& fault) {
-    return fault.since_changed();  // every command checked its outputs before it began
+    return fault.since_changed();  // every command has checked its outputs before it began
   } catch (...) {
     return tessera::error_of(std::current_exception());
   }
@@ -169,7 +169,7 @@ void fill_standard_descriptors() {
     if (::fcntl(descriptor, F_GETFD) < 0) static_cast<void>(::open("/dev/null", how));
 }
 
-/// With a smaller limit, the stack of the first thread, and of the others, may overflow during a frame.
+/// Throws if the limit of the stack is so small that the stack of a thread could overflow during a frame.
 void require_stack() {
   constexpr rlim_t least = 1 << 20;
   rlimit limit{};
@@ -181,8 +181,8 @@ void require_stack() {
                 "ulimit -s 8192");
 }
 
-/// The stack of the first thread grows on demand. If the address space is limited, that may fail later, and the system
-/// then kills the process without a message. So it grows now, to more than rendering needs.
+/// Makes the stack of the first thread grow to more than rendering needs. Stacks grow on demand. If the address space
+/// is limited, growing may fail later, and the system then kills the process without a message.
 [[gnu::noinline]] void grow_stack() {
   std::array<volatile char, 1 << 19> room;  // NOLINT(cppcoreguidelines-pro-type-member-init): touched below
   for (std::size_t byte = 0; byte < room.size(); byte += 4096) room[byte] = 0;
@@ -193,7 +193,7 @@ void require_stack() {
 int main(int argc, char** argv) {
   using tessera::apps::fail;
   fill_standard_descriptors();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is an ordinary error
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is reported as an ordinary error
   std::optional<tessera::Job> job;
   try {
     require_stack();
@@ -208,7 +208,7 @@ int main(int argc, char** argv) {
   ExitCode code = ExitCode::complete;
   try {
     code = tessera::apps::run(argc, argv, *job);
-    // A result that did not reach its reader (a full disk behind `>`) is an error.
+    // A result that could not be written (a full disk behind `>`) is an error.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
   } catch (...) {

@@ -27,7 +27,7 @@ Error no_command(const std::string& word) {
   return bad_input(fmt::format("arguments: '{}' is not a command; use {} or {}", word, fmt::join(names, ", "), last));
 }
 
-/// The first argument that looks like an option but is unknown.
+/// Returns the first argument that looks like an option but is not one.
 std::optional<std::string> unknown_option(const CLI::App& command) {
   for (const std::string& word : command.remaining())
     if (word.size() > 1 && word.front() == '-') return word.substr(0, word.find('='));
@@ -48,13 +48,13 @@ CLI::Option* declare(const OptionRow& row, CLI::App& command) {
   if (row.is(Trait::flag | Trait::place)) return command.add_flag(names);
   CLI::Option* const option = command.add_option(names, CLI::callback_t());
   option->type_name(std::string(row.value));
-  // One value per occurrence: `-o out.png mesh.vtu` would otherwise take the mesh as a second output.
+  // Each occurrence has one value. Otherwise, in `-o out.png mesh.vtu`, the mesh would be a second output.
   if (row.is(Trait::list))
     option->expected(1, CLI::detail::expected_max_vector_size)->take_all()->allow_extra_args(row.is(Trait::positional));
   return option;
 }
 
-/// `tessera help [COMMAND]`.
+/// The text for `tessera help [COMMAND]`.
 std::string help_of(const OptionWords& words) {
   const std::string& name = words.word("command");
   const CommandRow* const command = command_named(name);
@@ -62,7 +62,7 @@ std::string help_of(const OptionWords& words) {
   return words.given("man") ? manual_page(command) : help_page(command, words.given("all"));
 }
 
-/// Every subcommand with its options, and the given words.
+/// Parser of all subcommands with their options, and the given words.
 struct CommandLine {
   CommandLine() : app("", "tessera") {
     app.set_version_flag("--version",
@@ -80,11 +80,11 @@ struct CommandLine {
   std::vector<std::pair<const OptionRow*, CLI::Option*>> options;
 };
 
-/// The value of a flag: `--smooth`, or `--smooth=yes`.
+/// Whether a flag is on: `--smooth`, or `--smooth=yes`.
 bool is_on(const OptionRow& row, const std::string& word) {
   try {
     if (const auto value = CLI::detail::to_flag_value(word); value == 1 || value == -1) return value == 1;
-  } catch (const std::logic_error&) {  // not a value of a flag
+  } catch (const std::logic_error&) {  // the word is not a value of a flag
   }
   throw bad_input(fmt::format("{}: takes no value; leave that out", shown_name(row)));
 }
@@ -111,7 +111,7 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
     if (prints) std::fputs(text.c_str(), stdout);
     return std::nullopt;
   };
-  if (first == "complete") {  // internal, for completion scripts: the words are not checked
+  if (first == "complete") {  // an internal command for completion scripts, whose words are not checked
     std::string names;
     for (const std::string& name : completions({argv + 2, argv + argc})) names += name + '\n';
     return print(names);

@@ -7,14 +7,14 @@
 
 namespace tessera::apps {
 
-/// The words of the program's arguments; for `render` including those of its --config.
+/// The command and the words of the program's arguments. For `render` they include the words of --config.
 struct Arguments {
   const CommandRow* command;  ///< never null
   OptionWords words;
 };
 
-/// None if nothing remains to do: help or the version was requested, and is printed on standard output if `prints`.
-/// Throws Error(bad_input) for invalid arguments, suggesting the nearest name.
+/// Parses the arguments. Returns none if they request the help or the version, which is printed on standard output if
+/// `prints`. Throws Error(bad_input), which suggests the nearest name, for invalid arguments.
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool prints);
 
 }  // namespace tessera::apps

@@ -15,7 +15,7 @@
 namespace tessera::apps {
 namespace {
 
-/// Set once, before any other thread runs.
+/// Name of the file with the contents of standard input. It is set once, before any other thread runs.
 std::string& spooled_name() {
   static std::string name;
   return name;
@@ -31,7 +31,7 @@ std::filesystem::path spool_standard_input() {
                 fmt::format("{} {}: {}", what, std::filesystem::temp_directory_path().string(), std::strerror(errno)),
                 "free some space there, or set TMPDIR to another directory");
   };
-  // Stays open until the process ends: its name is one of this process's open files.
+  // The file remains open until the process ends, because its name refers to an open file of this process.
   int file = ::open(std::filesystem::temp_directory_path().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file < 0) {
     std::string name = (std::filesystem::temp_directory_path() / "tessera-XXXXXX").string();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view indent = "  ";
 
-/// Columns of a text: continuation bytes of UTF-8 take none.
+/// Number of columns of a text. Continuation bytes of UTF-8 do not take a column.
 std::size_t columns(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
@@ -25,7 +25,7 @@ std::size_t columns(std::string_view text) {
 /// Fills lines with one piece after another.
 class Lines {
  public:
-  /// Puts the piece on the current line after `joint`, or on a new one; false if it fits on neither.
+  /// Puts the piece on the current line after `joint`, or on a new line. Returns false if it does not fit on either.
   bool put(std::string_view piece, std::string_view joint) {
     const std::string_view between = is_fresh_ ? "" : joint;
     if (columns(line_) + columns(between) + columns(piece) > most_columns) {
@@ -38,7 +38,7 @@ class Lines {
     is_fresh_ = false;
     return true;
   }
-  /// Puts the word, cut at the ends of lines.
+  /// Adds the word, which is cut at the ends of lines.
   void cut(std::string_view word, std::string_view joint) {
     if (!is_fresh_) line_ += columns(line_) + columns(joint) < most_columns ? joint : "";
     for (std::size_t at = 0; at < word.size(); ++at) {

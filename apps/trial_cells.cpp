@@ -24,7 +24,8 @@ class ToPixels {
     pixels_ = size.height * 0.5 / half;
   }
 
-  /// False if one of the corners is not in front of the eye or not between the near and far plane.
+  /// Projects the corners of a cell. Returns false if a corner is not in front of the eye or not between the near and
+  /// the far plane.
   [[nodiscard]] bool operator()(const std::array<glm::dvec3, 4>& corners, std::array<glm::dvec3, 4>& projected) const {
     for (std::size_t k = 0; k < 4; ++k) {
       const glm::dvec3 from_eye = corners[k] - camera_.position;
@@ -42,10 +43,10 @@ class ToPixels {
   const Camera& camera_;
   ViewBasis basis_;
   glm::dvec3 middle_;
-  double pixels_ = 1;  ///< per world unit, or per world unit at depth 1
+  double pixels_ = 1;  ///< pixels per world unit; in perspective at depth 1
 };
 
-/// The range in which a cell's outline meets a row of pixel centres.
+/// Returns the range in x where a cell's outline meets the row of pixel centres at `y`.
 std::pair<double, double> across(const std::array<glm::dvec3, 4>& p, double y) {
   double low = 1e300, high = -1e300;
   for (const auto& [a, b] : edges) {
@@ -68,7 +69,7 @@ Extent extent_along(const std::array<glm::dvec3, 4>& p) {
   return {(*low)[axis], (*high)[axis]};
 }
 
-/// The pixels of `count` whose centres are in [low, high]: the first, and one past the last.
+/// Returns the pixels, out of `count`, whose centres are in [low, high]: the first one, and one past the last.
 std::pair<int, int> centres(double low, double high, int count) {
   const double first = std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(count));
   const double last = std::clamp(std::floor(high - 0.5), -1.0, count - 1.0);
@@ -158,7 +159,7 @@ TrialCells::Cell TrialCells::largest() const {
     const double volume = std::abs(glm::dot(c[1] - c[0], glm::cross(c[2] - c[0], c[3] - c[0]))) / 6;
     const double a = area(1, 2, 3), b = area(0, 2, 3), d = area(0, 1, 3), e = area(0, 1, 2), all = a + b + d + e;
     const double radius = all > 0 ? 3 * volume / all : 0;
-    // The ball that touches all faces: its centre is the mean of the corners, weighted by the opposite faces.
+    // The ball touches all faces. Its centre is the mean of the corners, weighted by the areas of the opposite faces.
     if (radius > most.radius) most = {(c[0] * a + c[1] * b + c[2] * d + c[3] * e) / all, radius};
     return true;
   });

@@ -18,24 +18,24 @@ namespace tessera::apps {
 /// Tests views without rendering: the visible cells of this rank's part of a mesh, or the box of a grid.
 class TrialCells {
  public:
-  /// The data set must outlive it. `emits`: colour is visible without extinction.
+  /// The data set must outlive this object. If `emits`, colour is visible without extinction.
   TrialCells(const Dataset& data, const TransferFunction& function, bool emits);
 
-  /// The number of pixels that certainly show something, because their centres are inside a cell's outline. Counts up
-  /// to enough(). The cells are first scaled by `scale` along the axes.
+  /// Returns the number of pixels that certainly show something, because their centres are inside the outline of a
+  /// cell. Counting stops at enough(). The cells are first scaled by `scale` along the axes.
   [[nodiscard]] std::uint64_t pixels(const Camera& camera, ImageSize size,
                                      const glm::dvec3& scale = glm::dvec3(1)) const;
-  /// Whether a corner of a cell is in the image or a cell extends across it, however thin.
+  /// Whether a corner of a cell is in the image, or a cell, however thin, extends across the image.
   [[nodiscard]] bool is_in_view(const Camera& camera, ImageSize size) const;
 
   struct Cell {
     glm::dvec3 centre{0};
-    double radius = 0;  ///< of a ball around the centre, inside the cell
+    double radius = 0;  ///< radius of a ball around the centre, inside the cell
   };
   /// The cell that contains the largest ball; radius 0 if there is no cell.
   [[nodiscard]] Cell largest() const;
 
-  /// The number of pixels, for an image of this size, that is not accidental.
+  /// The number of pixels, for an image of this size, that are not visible just by accident.
   static std::uint64_t enough(ImageSize size) {
     return static_cast<std::uint64_t>(std::clamp<std::int64_t>(std::int64_t{size.width} * size.height / 256, 1, 64));
   }

@@ -152,7 +152,7 @@ void chart(const OptionWords& words) {
   const analysis::ChartScene scene{
       data, view, loaded.function, settings.emission, settings.threads, settings.memory_bytes};
 
-  // Any use of the data needs to read them, whatever the method.
+  // Reading the data is required for any method, so its time is measured once.
   const double reading = seconds_since(begin);
   const auto read = Clock::now();
   line.begin("rendering the reference");
@@ -173,7 +173,7 @@ void chart(const OptionWords& words) {
   for (std::size_t i = 0; i < methods.size(); ++i) {
     points[i].options = options_text(methods[i], data.is_grid());
     points[i].left_out = with_options(points[i].left_out);
-    // Methods that need mpirun, or that switch optimizations off, are in the chart but are not recommended.
+    // Methods that need mpirun or switch optimizations off are in the chart, but are not recommended.
     if (methods[i].recommended()) alone.push_back(points[i]);
   }
   for (const auto& file : words.words("peer"))

@@ -3,8 +3,8 @@
 
 namespace tessera::apps {
 
-/// `tessera formats`: prints the formats that are read, with their extensions and limits, and those that are not, as
-/// text or as JSON; from the table that the readers use (tessera/file_formats.hpp).
+/// Implements `tessera formats`: prints the formats that can be read, with their extensions and limits, and the formats
+/// that cannot, as text or as JSON. The formats are those of the table that the readers use (tessera/file_formats.hpp).
 void formats(bool as_json);
 
 }  // namespace tessera::apps

@@ -7,12 +7,12 @@
 
 namespace tessera::apps {
 
-/// `tessera generate KIND OUT [NAME=VALUE ...]`: writes a mesh of datasets/ as .tets or .vtu. Prints one line on stderr
-/// unless `quiet`. Throws Error for an unknown kind or parameter, listing the known ones.
+/// Implements `tessera generate KIND OUT [NAME=VALUE ...]`: writes a mesh of datasets/ as .tets or .vtu. Prints one
+/// line on stderr unless `quiet`. Throws Error, which lists the known kinds or parameters, for an unknown one.
 void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
               bool quiet);
 
-/// Kinds with their parameters and defaults, several lines, for the help.
+/// Several lines for the help: the kinds with their parameters and defaults.
 std::string generator_help();
 
 /// Names of all kinds.

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Adding 0 removes the sign of -0, which descending axes may have.
+/// Adds 0 to remove the sign of -0, which descending axes may have.
 std::string triple(const glm::dvec3& with_signs) {
   const glm::dvec3 v = with_signs + 0.0;
   return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z);
@@ -40,12 +40,13 @@ std::string lattice_line(const GridGeometry& g) {
   return line;
 }
 
-/// The time steps of a file or series, and the one that the other lines describe.
+/// The time steps of a file or series, and the step that the other lines describe.
 struct Steps {
   std::size_t count = 1, at = 0;
-  std::vector<double> times;                     ///< or numbers that replace them; empty: neither
-  bool timed = false;                            ///< `times` are times
-  std::optional<std::array<double, 2>> range{};  ///< on which the images of all steps are based
+  std::vector<double> times;                     ///< times, or the numbers of the steps if there are no times; may be
+                                                 ///< empty
+  bool timed = false;                            ///< `times` contains times, not numbers
+  std::optional<std::array<double, 2>> range{};  ///< range of values that the images of all steps use
 };
 
 std::string steps_line(const Steps& steps) {
@@ -132,7 +133,7 @@ void print_check(const MeshCheck& check) {
 
 namespace {
 
-/// The opened input, with the basis of its images.
+/// The opened input, and the options that its images use.
 struct Opened {
   std::optional<Dataset> data;
   LoadedTransferFunction function;
@@ -153,7 +154,8 @@ Opened open_file(const InputFile& input, const ReadOptions& options, StatusLine&
   return opened;
 }
 
-/// The requested step as `render` shows it alone, or the first step as in a film of all steps.
+/// Opens the requested step as `render` does for a single step or, without a request, the first step as in a film of
+/// all steps.
 Opened open_series(const std::filesystem::path& input, ReadOptions options, StatusLine& line) {
   const std::vector<TimeStep> series = read_time_series(input);
   const std::optional<std::size_t> requested = std::exchange(options.time_step, std::nullopt);
@@ -163,7 +165,7 @@ Opened open_series(const std::filesystem::path& input, ReadOptions options, Stat
   Opened opened;
   opened.steps = {series.size(), requested.value_or(0), {}, true, {}};
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
-    opened.data.reset();  // one step's memory at a time
+    opened.data.reset();  // only one step in memory at a time
     line.begin("reading " + series[step].files.front().filename().string());
     ReadOptions watched = read;
     watched.progress = line.listener();

@@ -5,9 +5,9 @@
 
 namespace tessera::apps {
 
-/// `tessera info`: prints what a file contains and how `render` would show it by default, as text or as JSON. `first`
-/// is first_input(). With `check`, for meshes, also prints defects of the cells (tessera/mesh_check.hpp). Shows the
-/// progress of a slow read on stderr if that is a terminal. Throws Error.
+/// Implements `tessera info`: prints the contents of a file and how `render` would show them by default, as text or as
+/// JSON. `first` is the result of first_input(). For meshes, `check` also prints defects of the cells
+/// (tessera/mesh_check.hpp). If stderr is a terminal, the progress of slow reading is shown on it. Throws Error.
 void info(const std::filesystem::path& input, const InputFile& first, const ReadOptions& options, bool as_json,
           bool check);
 

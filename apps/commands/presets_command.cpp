@@ -14,12 +14,12 @@
 namespace tessera::apps {
 namespace {
 
-/// The colours from low to high, below their name, on white.
+/// Draws the colours from low to high, below their name, on white.
 Image drawn(const std::string& name, ImageSize size) {
   constexpr int margin = 8, top = 28;
   const TransferFunction function = preset_function(name);
   Image image(size);
-  std::ranges::fill(image.rgba, 1.0f);  // makes every map except white visible
+  std::ranges::fill(image.rgba, 1.0f);  // every colour map except a white one is visible on white
   const int width = size.width - 2 * margin;
   for (int y = top; y < size.height - margin; ++y)
     for (int x = 0; x < width; ++x) {

@@ -5,7 +5,8 @@
 
 namespace tessera::apps {
 
-/// `tessera presets`: prints the names of all colours, one per line; draws them into an image instead if one is named.
+/// Implements `tessera presets`: prints the names of all colours, one per line, or draws the colours into the image
+/// file `picture`, if given.
 void presets(const std::filesystem::path& picture);
 
 }  // namespace tessera::apps

@@ -38,7 +38,7 @@ void serve(const OptionWords& words, Job& job) {
   const server::ServeOptions options = serve_options(words);
   require_input(words.word("input"));
   const auto reader = scene_reader(words, job);
-  static_cast<void>(reader->scene(server::Json::object()));  // reports errors in its words now
+  static_cast<void>(reader->scene(server::Json::object()));  // reports errors in the options now
   server::ServeEvents events;
   events.listening = [](const std::string& url) {
     fmt::print("{}\n", url);

@@ -6,8 +6,8 @@
 
 namespace tessera::apps {
 
-/// `tessera serve INPUT`: shows images in a browser, exact ones and previews during changes, until SIGINT, SIGTERM or
-/// SIGHUP. Prints the address to open. Collective. Throws Error.
+/// Implements `tessera serve INPUT`: shows images in a browser until SIGINT, SIGTERM or SIGHUP. The images are exact;
+/// during changes they are previews. Prints the address to open. Collective. Throws Error.
 void serve(const OptionWords& words, Job& job);
 
 }  // namespace tessera::apps

@@ -22,7 +22,8 @@
 namespace tessera::apps {
 namespace {
 
-/// Options with this trait as one text. Values are quoted, so that different words never give the same text.
+/// Returns the options with this trait as one text. Values are quoted, so that different words always give different
+/// texts.
 std::string key_of(const OptionWords& words, Trait trait) {
   server::Json key = server::Json::object();
   for (const OptionRow* row : option_rows(trait))
@@ -52,18 +53,21 @@ bool preset_is_named(const std::string& function) {
   return std::ranges::find(names, function.substr(0, function.find(':'))) != names.end();
 }
 
-/// The values of all options except camera and size, and what follows from them.
+/// The values of all options except camera and size, and values derived from them.
 struct ParsedWords {
   RenderOptions options;
   FilmFrame frame;
   std::string data, field, look, settings;  ///< keys
   bool shape = false;
   std::string accuracy;
-  std::shared_ptr<const LoadedTransferFunction> series_function{};     ///< null: that of the step
-  mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
+  std::shared_ptr<const LoadedTransferFunction> series_function{};     ///< function for all steps; null: each step has
+                                                                       ///< its own
+  mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< surfaces including those of blocks, and the
+                                                                       ///< field for which they were read
 };
 
-/// Key of the data that are read: the field may be named or not, and without curved cells the accuracy does not matter.
+/// Returns the key of the data that are read. The key contains the given `field`, which may differ from the option's,
+/// and, if `linear`, does not contain the accuracy, which has no effect without higher-order cells.
 std::string data_key(const ParsedWords& parsed, const std::string& field, bool shape, bool linear) {
   return fmt::format("{} {} {} {}", parsed.data,
                      server::Json(field).dump(-1, ' ', false, server::Json::error_handler_t::replace), shape,
@@ -93,8 +97,8 @@ class RenderScene final : public server::Scene {
     const char* const side = data.association() == Association::cell ? "cell:" : "point:";
     add(name, false);
     if (!name.starts_with(side)) add(side + name, false);
-    // Without a name, the choice is the same with or without a function, except for labels and constants, which give
-    // the shape.
+    // If no field is named, the chosen field is the same with and without a given function, except for labels and
+    // constants, for which the shape is shown.
     if (parsed_->field.empty() && parsed_->shape) add("", false);
     return keys;
   }
@@ -141,7 +145,7 @@ class RenderScene final : public server::Scene {
  private:
   [[nodiscard]] const RenderOptions& options() const { return parsed_->options; }
 
-  /// The surfaces of blocks for this field; those of the last field are kept.
+  /// The surfaces, including those of blocks, for the field of `data`. The surfaces for the last field are kept.
   [[nodiscard]] const Surfaces& block_surfaces(const Dataset& data) const {
     std::string field = field_word(data);
     if (!parsed_->surfaces || parsed_->surfaces->first != field) {
@@ -160,13 +164,13 @@ class RenderScene final : public server::Scene {
   std::vector<std::string> keys_;
 };
 
-/// What `render` would choose for all steps of a series.
+/// The choices that `render` would make for all steps of a series.
 struct SeriesStart {
   std::string field;
-  std::vector<std::string> names;  ///< names of that field
+  std::vector<std::string> names;  ///< names of the field
   std::array<double, 2> range{};
-  std::shared_ptr<const LoadedTransferFunction> function;  ///< null: options state its values
-  std::string look;                                        ///< key of the options on which it is based
+  std::shared_ptr<const LoadedTransferFunction> function;  ///< null if options specify its values
+  std::string look;                                        ///< key of the options on which `function` is based
 };
 
 class RenderSceneReader final : public server::SceneReader {
@@ -182,7 +186,7 @@ class RenderSceneReader final : public server::SceneReader {
   }
 
   /// Chooses field and colours of a series as `render` does for all its steps. If the first step cannot be read, the
-  /// scene that opens it reports the error. Collective.
+  /// scene that opens this step reports the error. Collective.
   void choose_for_all_steps(Job& job) {
     if (!shows_all_) return;
     const auto parsed = parse(base_);
@@ -231,7 +235,7 @@ class RenderSceneReader final : public server::SceneReader {
   }
 
   std::string command(const server::Json& state) override {
-    static_cast<void>(scene(state));  // invalid states have no command
+    static_cast<void>(scene(state));  // throws for an invalid state, which has no command
     OptionWords words = state_words(base_, state);
     if (const auto function = series_function(words)) {
       const bool states_shading = words.given_one_of({"shade", "no-shade"});
@@ -270,13 +274,13 @@ class RenderSceneReader final : public server::SceneReader {
     return start_ && (field.empty() || std::ranges::find(start_->names, field) != start_->names.end());
   }
 
-  /// Null if the words request another function.
+  /// Returns the function chosen for the series; null if the words request another one.
   [[nodiscard]] std::shared_ptr<const LoadedTransferFunction> series_function(const OptionWords& words) const {
     const bool is_its_own = shows_series_field(words) && key_of(words, Trait::look) == start_->look;
     return is_its_own ? start_->function : nullptr;
   }
 
-  /// Adds the field of the series and, for presets, the range of all steps.
+  /// Returns the words with the field of the series and, for presets, the range of all steps.
   [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
     if (!start_) return words;
     const auto [low, high] = start_->range;
@@ -288,7 +292,7 @@ class RenderSceneReader final : public server::SceneReader {
     return words;
   }
 
-  /// Parsed once for all cameras and sizes, which change most often.
+  /// Parses the words. The result is kept and reused for all cameras and sizes, which change most often.
   std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words) {
     OptionWords rest = words;
     if (rest.given("camera")) rest.set("camera", "{}");
@@ -332,7 +336,7 @@ class RenderSceneReader final : public server::SceneReader {
   bool is_grid_;
   OptionWords base_;
   std::vector<double> times_;
-  bool shows_all_ = false;  ///< all steps of a series
+  bool shows_all_ = false;  ///< the server shows all steps of a series
   std::optional<SeriesStart> start_;
   std::list<std::pair<std::string, std::shared_ptr<const ParsedWords>>> kept_;
 };

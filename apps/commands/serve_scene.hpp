@@ -9,8 +9,9 @@
 
 namespace tessera::apps {
 
-/// The part of `tessera serve` that it shares with `tessera render`: states of clients get the same values and checks,
-/// so that a state's image is that of its command line. Reads some steps of a time series, with all ranks.
+/// Makes the part of `tessera serve` that is shared with `tessera render`: states of clients are converted and checked
+/// like command lines, so that a state gives the same image as its command line. Reads some steps of a time series, on
+/// all ranks.
 std::unique_ptr<server::SceneReader> scene_reader(const OptionWords& words, Job& job);
 
 }  // namespace tessera::apps

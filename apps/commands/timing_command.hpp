@@ -6,8 +6,8 @@
 
 namespace tessera::apps {
 
-/// `tessera timing`: prints where traced runs spent their time (analysis/timing_breakdown.hpp) as text, and writes it
-/// as CSV and as a figure (.svg, .png) if paths are given. Throws Error.
+/// Implements `tessera timing`: prints how traced runs spent their time (analysis/timing_breakdown.hpp) and, if paths
+/// are given, writes it as CSV and as a figure (.svg, .png). Throws Error.
 void timing(const std::vector<std::filesystem::path>& traces, const std::filesystem::path& csv,
             const std::filesystem::path& figure);
 

@@ -19,10 +19,10 @@
 namespace tessera::apps {
 namespace {
 
-/// Reading a larger file to list names would cause a noticeable delay at the prompt.
+/// Size of the largest file that is read to list names. A larger file would cause a noticeable delay at the prompt.
 constexpr std::uintmax_t largest_read = std::uintmax_t{512} << 20;
 
-/// The option that a word like --size or -o names; may be null.
+/// The option of a word like --size or -o; null if there is none.
 const OptionRow* option_named(const CommandRow& command, std::string_view word) {
   if (!word.starts_with('-')) return nullptr;
   const std::string_view name = word.substr(word.starts_with("--") ? 2 : 1);
@@ -32,7 +32,7 @@ const OptionRow* option_named(const CommandRow& command, std::string_view word) 
 
 enum class Named { fields, blocks, point_vectors };
 
-/// Names in the first of these words that is a file, if it can be read quickly.
+/// Returns names from the first of the words that is a file, if the file can be read quickly.
 std::vector<std::string> names_in_file(const std::vector<std::string>& words, Named named) {
   for (const std::string& word : words) {
     std::error_code unknown;
@@ -47,16 +47,17 @@ std::vector<std::string> names_in_file(const std::vector<std::string>& words, Na
             (named == Named::point_vectors && field.components == 3 && field.association == Association::point))
           names.push_back(field.name);
       if (named == Named::point_vectors) names.emplace_back("off");
-      std::erase_if(names, [](const std::string& name) { return printable(name) != name; });  // one per line
+      std::erase_if(names, [](const std::string& name) { return printable(name) != name; });  // the shell expects one
+                                                                                              // name per line
       return names;
-    } catch (const std::exception&) {  // the name of an image, or a damaged file
+    } catch (const std::exception&) {  // the word may be the name of an image or of a damaged file
       continue;
     }
   }
   return {};
 }
 
-/// Colours; once there is a colon, each with an opacity.
+/// Names of colours or, if `current` contains a colon, of colours with opacities.
 std::vector<std::string> preset_words(std::string_view current) {
   std::vector<std::string> colors = preset_names();
   const std::string name(current.substr(0, current.find(':')));
@@ -66,7 +67,7 @@ std::vector<std::string> preset_words(std::string_view current) {
   return found;
 }
 
-/// The values of an option that begin with `current`; `files` is set if the value may be a file.
+/// Returns the values of an option that begin with `current`. Sets `files` if the value may be a file.
 std::vector<std::string> values_of(const OptionRow& row, const std::vector<std::string>& words,
                                    std::string_view current, bool& files) {
   const std::string_view name = row.key();

@@ -9,8 +9,8 @@
 namespace tessera::apps {
 namespace {
 
-// bash splits words at : and =, so words are joined again, and the part of the last word that bash already has is
-// removed.
+// bash splits words at : and =. The script therefore joins them again and removes from each completion the part that
+// bash already has.
 constexpr const char* bash_script = R"script(# Completion of tessera for bash.
 _tessera() {
   local word words=() found=() glued="" current given i

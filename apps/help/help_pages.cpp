@@ -17,7 +17,7 @@ constexpr std::string_view program_description =
     "Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.";
 constexpr std::size_t page_columns = 100, left_column = 30;
 
-/// Breaks text into lines; a word that is too long has its own line.
+/// Breaks text into lines. A word that is longer than a line has a line of its own.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   std::vector<std::string> lines(1);
   for (std::size_t at = 0; at < text.size();) {
@@ -30,7 +30,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   return lines;
 }
 
-/// The first part of a description that is too long, up to a semicolon or bracket.
+/// Returns the first part of a description that is too long, up to a semicolon or bracket.
 std::string_view first_words(std::string_view description, std::size_t width) {
   if (description.size() <= width) return description;
   const std::size_t cut = std::min(description.find("; "), description.find(" ("));
@@ -49,8 +49,7 @@ void add_entry(std::string& page, const std::string& form, std::string_view desc
   page += '\n';
 }
 
-/// A command's options under one title, without words that have no name. For `render` only the basic ones, unless
-/// `all`.
+/// A command's options under one title, without positional words. For `render` only the basic options, unless `all`.
 struct HelpTopic {
   std::string_view title;
   std::vector<const OptionRow*> rows;
@@ -74,7 +73,7 @@ std::vector<HelpTopic> help_topics(const CommandRow& command, bool all) {
   return result;
 }
 
-/// "tessera render [OPTIONS] INPUT [MORE...]"; null: for the program.
+/// Returns the usage of a command, "tessera render [OPTIONS] INPUT [MORE...]", or of the program if `command` is null.
 std::string usage_of(const CommandRow* command) {
   if (command == nullptr) return "tessera COMMAND";
   std::string line = fmt::format("tessera {} [OPTIONS]", command->name);
@@ -86,7 +85,7 @@ std::string usage_of(const CommandRow* command) {
   return line;
 }
 
-/// Escapes text for roff: a minus sign is not a hyphen, and no line starts a request.
+/// Escapes text for roff, so that a minus sign is not a hyphen and no line is read as a request.
 std::string escaped(std::string_view text) {
   std::string result;
   bool begins = true;

@@ -8,20 +8,21 @@
 
 namespace tessera::apps {
 
-/// "-o" and "--output", or "INPUT".
+/// The option's names as written on the command line: "-o" and "--output", or "INPUT".
 std::vector<std::string> written_names(const OptionRow& row);
 
-/// "--output", or "INPUT".
+/// The option's main name as written on the command line: "--output", or "INPUT".
 std::string shown_name(const OptionRow& row);
 
-/// The form of an option in front of its description: "-o, --output FILE"; a long list of choices is shortened unless
-/// `all`.
+/// The form in which the help shows an option before its description: "-o, --output FILE". A long list of choices is
+/// shortened unless `all`.
 std::string option_form(const OptionRow& row, bool all);
 
-/// The text of `--help` and `--help-all`, at most 100 columns wide; null: for the program.
+/// The text of `--help` or, if `all`, `--help-all`, at most 100 columns wide. If `command` is null, the text is that of
+/// the program.
 std::string help_page(const CommandRow* command, bool all);
 
-/// The manual page (section 1, roff) of a command; null: of the program.
+/// The manual page (section 1, roff) of a command or, if `command` is null, of the program.
 std::string manual_page(const CommandRow* command);
 
 }  // namespace tessera::apps

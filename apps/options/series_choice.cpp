@@ -18,17 +18,17 @@
 namespace tessera::apps {
 namespace {
 
-/// How far values may exceed the range of the colours, as a fraction of its width.
+/// How far values may exceed the range of the colours, as a fraction of the range's width.
 constexpr double most_beyond = 0.1;
 
-/// One examined step, with its own field or the one chosen for all.
+/// One examined step, with its own field or the field chosen for all steps.
 struct ExaminedStep {
   std::size_t step = 0;
-  std::string field;  ///< empty: the shape
+  std::string field;  ///< empty: the step shows the shape
   std::array<double, 2> range{};
   std::vector<FieldInfo> fields;
   std::optional<LoadedTransferFunction> function;
-  std::exception_ptr no_function;  ///< the error if there is none: with --log, a step that is 0 everywhere
+  std::exception_ptr no_function;  ///< the error if the step has no function: with --log, a field that is 0 everywhere
 };
 
 std::vector<std::size_t> all_below(std::size_t end) {
@@ -44,7 +44,7 @@ class SeriesExamination {
   SeriesExamination(const RenderOptions& options, const ReadOptions& read, const OpenStep& open)
       : options_(options), read_(read), open_(open), keeps_values_(function_has_values(options)) {}
 
-  /// Examines the steps from the last to the first, which stays open.
+  /// Examines the steps from the last to the first. The first step remains open.
   void examine(const std::vector<std::size_t>& steps) {
     std::for_each(steps.rbegin(), steps.rend(), [this](std::size_t step) {
       if (std::ranges::find(examined_, step, &ExaminedStep::step) != examined_.end()) return;
@@ -99,7 +99,7 @@ class SeriesExamination {
 
   ExaminedStep found_in(std::size_t step, const Dataset& data) {
     ExaminedStep found{step, word_of(data), data.range(), {data.fields().begin(), data.fields().end()}, {}, {}};
-    // Computed now, since only one step is in memory at a time.
+    // The function is computed now, since only one step is in memory at a time.
     try {
       if (!keeps_values_) found.function = transfer_function_of(data, options_);
     } catch (const Error&) {
@@ -115,8 +115,8 @@ class SeriesExamination {
     return field_of_steps(fields, read_);
   }
 
-  /// If no field varies over the steps, throws if some lack the field that others show: its colours would be those of
-  /// another field.
+  /// Throws if no field varies over the steps and some steps do not have the field that others show. Those steps would
+  /// show another field with the same colours.
   void require_same_field() {
     std::ranges::sort(examined_, {}, &ExaminedStep::step);
     const auto with = std::ranges::find_if(examined_, [](const ExaminedStep& l) { return !l.field.empty(); });
@@ -146,7 +146,7 @@ class SeriesExamination {
   const ReadOptions& read_;
   const OpenStep& open_;
   const bool keeps_values_;
-  std::vector<ExaminedStep> examined_;  ///< the first step last, until a field is chosen
+  std::vector<ExaminedStep> examined_;  ///< in the order of examination; the first step is last until a field is chosen
   std::pair<std::size_t, std::string> last_opened_;
 };
 

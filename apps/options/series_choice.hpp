@@ -12,37 +12,40 @@
 
 namespace tessera::apps {
 
-/// Field and colours for the images of a time series that options do not state.
+/// Field and colours for the images of a time series, if options do not specify them.
 ///
-/// Examines the first, the middle and the last of the selected steps and, only if nothing varies in these, the two
-/// midway between: at most five, whatever the length of the series. The field is chosen as for a file whose arrays each
-/// have the values of the step with the widest range. Colours and opacities are those of the step in which this field
-/// has the widest range, or over the range of all examined steps if that is more than a tenth wider.
+/// The first, the middle and the last of the selected steps are examined and, only if nothing varies in these steps,
+/// also the two steps midway between them: at most five steps for any length of the series. The field is chosen as for
+/// a file in which each array has the values of the step where its range is widest. Colours and opacities are those of
+/// the step in which this field has the widest range. If the range of all examined steps is more than a tenth wider,
+/// they are for that range.
 struct SeriesChoice {
-  std::string field;                               ///< in the form of ReadOptions; empty: each step's own choice
-  std::vector<std::size_t> steps;                  ///< examined, ascending
-  std::array<double, 2> range{};                   ///< of the field's values in these steps
-  std::optional<LoadedTransferFunction> function;  ///< none if a file specifies it
+  std::string field;                               ///< as in ReadOptions::field; empty: each step has its own choice
+  std::vector<std::size_t> steps;                  ///< the examined steps, ascending
+  std::array<double, 2> range{};                   ///< range of the field's values in these steps
+  std::optional<LoadedTransferFunction> function;  ///< none if a file specifies the function
 };
 
-/// Opens a step; null if it cannot be read, which is reported when it is shown. Never null for the first.
+/// Opens a step. Returns null if the step cannot be read; the error is reported when the step is shown. Never returns
+/// null for the first step.
 using OpenStep = std::function<const Dataset*(std::size_t step, const ReadOptions& read)>;
 
-/// Whether the transfer function is a file, or its text, with values that are not stretched.
+/// Whether the transfer function is given by a file or JSON text with values that are not stretched.
 bool function_has_values(const RenderOptions& options);
 
-/// Whether the options leave the field or the colours of several steps open.
+/// Whether the options do not specify the field or the colours of several steps.
 bool depends_on_steps(std::size_t steps, const RenderOptions& options);
 
 /// The steps to examine, ascending.
 std::vector<std::size_t> steps_to_examine(std::size_t steps);
 
-/// `steps` are the existing ones of steps_to_examine(). They must include the first, which is opened last, with the
-/// chosen field. The result is the same on all ranks, where `open` is collective.
+/// Chooses field and colours. `steps` are the existing steps among those of steps_to_examine(). They must include the
+/// first, which is opened last, with the chosen field. The result is the same on all ranks; `open` is called
+/// collectively.
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open);
 
-/// "field p and its colours are chosen by time steps 0, 2 and 4 of 5, where it is from 0 to 3".
+/// Returns a note like "field p and its colours are chosen by time steps 0, 2 and 4 of 5, where it is from 0 to 3".
 std::string series_note(const SeriesChoice& choice, std::size_t steps, const std::string& field);
 
 }  // namespace tessera::apps

@@ -8,8 +8,8 @@
 
 namespace tessera::apps {
 
-/// --stall-timeout and --on-stall; none if ranks are not to be watched. Notices go to stderr, one line each, unless
-/// `quiet`. Throws Error(bad_input).
+/// Reads the options --stall-timeout and --on-stall. Returns none if ranks are not watched. Stalls are reported on
+/// stderr, in one line each, unless `quiet`. Throws Error(bad_input).
 std::optional<StallSettings> stall_settings(const OptionWords& words, bool quiet);
 
 }  // namespace tessera::apps

@@ -19,7 +19,7 @@ constexpr const char* no_volume = "its cells have no volume that a pixel could s
 
 bool emits(const RenderOptions& options) { return options.settings.emission == Emission::independent; }
 
-/// Rounded up to at most two digits.
+/// Rounds a number up to at most two digits.
 double rounded_up(double number) {
   if (!(number > 0) || !std::isfinite(number)) return 1;
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1);
@@ -36,7 +36,7 @@ Value of_rank(Job& job, int rank, Value value) {
   return value;
 }
 
-/// Views and sizes similar to a frame's, tried on all ranks in the same order.
+/// Tries views and sizes similar to a frame's, on all ranks in the same order.
 class Tries {
  public:
   Tries(const FinishedRun& run, const FilmFrame& frame)
@@ -162,7 +162,8 @@ std::string advice_on_clear(const std::array<double, 2>& range, const FinishedRu
   return fmt::format("{}; --range {:.6g},{:.6g} stretches it over them", why, range[0], range[1]);
 }
 
-/// Whether a ray through visible values, over a ten-thousandth of the box, would give more than zero in floats.
+/// Whether a ray inside visible values, as long as a ten-thousandth of the box, would give more than zero in single
+/// precision.
 bool would_show(const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
   const double most = emits(options) ? function.max_color() : function.max_extinction();
   return most * diagonal(data.bounds()) > 1e-2;
@@ -173,7 +174,8 @@ std::string advice_on_faint(const MostOfPixels& most_seen, const FinishedRun& ru
     return fmt::format("no pixel has more light than {:.2g}; give the transfer function brighter colours",
                        most_seen.light);
   if (most_seen.alpha == 0 && run.data.mesh_counts().cells_zero_volume > 0) return no_volume;
-  const double thickest = diagonal(run.box) * run.function.max_extinction();  // in floats it would be zero
+  const double thickest = diagonal(run.box) * run.function.max_extinction();  // smaller values are zero in single
+                                                                              // precision
   const double most = most_seen.alpha > 0 ? most_seen.alpha : std::max(thickest, 1e-300);
   return fmt::format("no pixel is more opaque than {:.2g}; --opacity-scale {:g} shows something", most_seen.alpha,
                      rounded_up(run.options.function.opacity_scale * 0.7 / most));
@@ -200,7 +202,7 @@ EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, con
   if (data.is_grid()) {
     const GridCounters& grid = frame.statistics.grid;
     if (grid.bricks_total > 0 && grid.bricks_invisible == grid.bricks_total) return EmptyReason::blank;
-    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels: only the box was tested
+    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels, since only the box was tested
     if (grid.voxels_visited == 0) return EmptyReason::missed;
     if (has_nothing && data.blank_samples() > 0) return EmptyReason::blank;
     return has_nothing && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;
@@ -259,7 +261,8 @@ std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {
   }
   Tries tries(run, run.frames[first.frame]);
   std::vector<std::string> remedies;
-  // A grid only counts its rays, and tets that are not culled are projected wherever they are.
+  // For grids only rays are counted, and for meshes tets outside the view are counted as projected unless they are
+  // culled. So the view is tested.
   const bool in_view = tries.is_in_view();
   if (reason == EmptyReason::between && !in_view) reason = EmptyReason::outside;
   if (reason == EmptyReason::outside && run.data.is_grid() && in_view) reason = EmptyReason::between;

@@ -25,7 +25,7 @@
 namespace tessera::apps {
 namespace {
 
-/// The times of the input's steps, as read by one rank.
+/// The times of the input's steps. One rank reads them.
 std::vector<double> times_in(const RenderOptions& options, Job& job) {
   std::vector<double> times;
   if (job.rank() == 0) times = times_of(*options.first, options.read);
@@ -36,8 +36,8 @@ std::vector<double> times_in(const RenderOptions& options, Job& job) {
   return times;
 }
 
-/// One rank's part of a run: the loop over its frames. `ShownStep` has the data, `FrameWriter` the files, `RunOutput`
-/// what is printed and reported.
+/// One rank's part of a run: the loop over its frames. `ShownStep` contains the data, `FrameWriter` writes the files,
+/// and `RunOutput` prints and reports.
 class Film final : public Sink {
  public:
   Film(const RenderOptions& options, Job& job)
@@ -59,7 +59,7 @@ class Film final : public Sink {
     job_.require_same_files();  // the plan depends on these files
     agree_on_finished_frames();
     for (std::size_t first = 0; first < frames_.size();) {
-      // The frames of one step are rendered together: they share the open data.
+      // The frames of one step are rendered together, because they share the open data.
       std::vector<std::size_t> group;
       std::size_t last = first;
       for (; last < frames_.size() && frames_[last].step == frames_[first].step; ++last)
@@ -80,7 +80,7 @@ class Film final : public Sink {
 
   [[nodiscard]] bool wants_tiles() const override { return false; }
 
-  /// For overlapping frames, on the writing rank: every repetition of every frame in order.
+  /// Called on the writing rank if frames overlap: once for every repetition of every frame, in order.
   void frame(RenderedFrame&& rendered) override {
     if (!writes_) return;
     const std::size_t at = listed_[rendered.number];
@@ -94,7 +94,7 @@ class Film final : public Sink {
   Image spare_image(ImageSize size) override { return frame_writer_.spare_images().take(size); }
 
  private:
-  /// All ranks use the writing rank's view of the disk.
+  /// All ranks use the list of finished frames that the writing rank finds on its disk.
   void agree_on_finished_frames() {
     if (writes_) {
       check_annotation(options_.annotation);
@@ -118,7 +118,7 @@ class Film final : public Sink {
     return {frame, step_.camera(frame), step_.data(), step_.function(), options_};
   }
 
-  /// With several images of a volume, one is cast while the previous one is gathered.
+  /// Whether several images of a volume overlap: rays of one image are cast while the previous image is gathered.
   [[nodiscard]] bool grids_overlap(const std::vector<std::size_t>& group) const {
     const FrameSettings& frame = options_.frame;
     return options_.is_grid() && job_.size() > 1 && group.size() > 1 && !frame.deep && !frame.peel && !frame.keep_cost;
@@ -150,7 +150,7 @@ class Film final : public Sink {
       if (!frame.outputs.empty()) output_.line().begin("writing " + frame.outputs.front().filename().string());
       FinishedFrame finished{std::make_shared<const RenderedFrame>(std::move(rendered)), annotated(frame),
                              frame.number};
-      // Drawn now: the session may be at the next frame when a thread writes this one.
+      // The images are drawn now, because the session may already render the next frame when a thread writes this one.
       if (options_.show_balance)
         finished.balance = step_.session().balance_pictures(*finished.rendered, view, step_.function());
       if (trace != nullptr) finished.began_us = began_us;
@@ -173,7 +173,7 @@ class Film final : public Sink {
     listed_before_ += listed_.size();
   }
 
-  /// On the writing rank: writes a frame, verifies and reports it.
+  /// Called on the writing rank: writes, verifies and reports a frame.
   void finish(const FilmFrame& frame, FinishedFrame finished) {
     const std::shared_ptr<const RenderedFrame> rendered = finished.rendered;
     FrameRecord record;
@@ -193,7 +193,7 @@ class Film final : public Sink {
   }
 
   void write_trace() {
-    step_.close_session();  // its spans must end before they are written
+    step_.close_session();  // the session's spans must end before they are written
     TraceRun traced;
     std::string process = fmt::format("rank {}", job_.rank());
     if (step_.is_open() || (overlaps_ && !options_.is_grid()))
@@ -212,9 +212,9 @@ class Film final : public Sink {
     tessera::write_trace(*traces_.rendering(), process, traced, options_.timing, job_.communicator(), writing_rank_);
   }
 
-  RenderOptions options_;  ///< completed once the data are known
+  RenderOptions options_;  ///< completed after the data have been read
   Job& job_;
-  const Roles roles_;  ///< for a mesh
+  const Roles roles_;  ///< used for meshes
   const int writing_rank_;
   const bool writes_, overlaps_;
   std::vector<FilmFrame> frames_;
@@ -222,10 +222,10 @@ class Film final : public Sink {
   RunOutput output_;
   ShownStep step_;
   EmptyPictures empty_;
-  std::vector<double> frame_ms_;     ///< of the current frame
+  std::vector<double> frame_ms_;     ///< times of the current frame's repetitions
   std::vector<std::size_t> listed_;  ///< frames of the current list, each once per repetition
   std::size_t listed_before_ = 0;    ///< number of frames in earlier lists
-  FrameWriter frame_writer_;         ///< last: it refers to the members above until it has written
+  FrameWriter frame_writer_;         ///< must be last: uses the members above until all frames are written
 };
 
 }  // namespace

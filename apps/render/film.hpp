@@ -7,9 +7,9 @@
 
 namespace tessera::apps {
 
-/// `tessera render` for a mesh or a grid: plans the frames, checks all outputs, reads, renders, writes, verifies and
-/// reports; on all ranks of the job, or in this process if it is the only one. The rank that assembles the images
-/// writes files and messages. Collective.
+/// Implements `tessera render` for a mesh or a grid: plans the frames, checks all outputs, then reads, renders, writes,
+/// verifies and reports, on all ranks of the job. The rank that assembles the images writes files and messages.
+/// Collective.
 ///
 /// Returns complete, or accuracy_not_met if --verify found a larger error than promised (the images are still written).
 /// Throws Error.

@@ -5,10 +5,10 @@
 
 namespace tessera::apps {
 
-/// Traces of one rank's run (--timing). All pointers are null unless they are requested.
+/// Traces of one rank's run (--timing). All pointers are null unless traces are requested.
 class FilmTraces {
  public:
-  /// `overlapping`: frames are rendered while others are composited and written, by separate roles.
+  /// If `overlapping`, frames are rendered while other frames are composited and written, in separate roles.
   FilmTraces(bool timed, bool overlapping)
       : trace_(overlapping ? TraceRole::projector : TraceRole::both),
         compositing_(trace_, TraceRole::compositor),
@@ -18,7 +18,7 @@ class FilmTraces {
   FilmTraces& operator=(const FilmTraces&) = delete;
 
   [[nodiscard]] Trace* rendering() const { return rendering_; }
-  /// For finished frames: writing and verifying.
+  /// The trace for writing and verifying finished frames.
   [[nodiscard]] Trace* writing() const { return writing_; }
 
  private:

@@ -38,7 +38,7 @@ void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedF
   const AnnotationOptions& asked = options.annotation;
   if (!asked.annotation) return writer.write(image, deep, frame);
   if (asked.layer.empty()) {
-    Image picture = image;  // the image without annotation is verified later
+    Image picture = image;  // a copy, because the image without annotation is verified later
     draw_annotation(picture, annotated);
     return writer.write(picture, deep, frame);
   }

@@ -11,28 +11,28 @@
 
 namespace tessera::apps {
 
-/// Checks before anything is read whether the annotation is valid for any data. Throws as validate(const Annotation&)
-/// and fill_in().
+/// Checks, before anything is read, that the annotation may be valid for some data. Throws the same errors as
+/// validate(const Annotation&) and fill_in().
 void check_annotation(const AnnotationOptions& options);
 
-/// The complete check, before anything is rendered.
+/// Checks the annotation completely, before anything is rendered.
 void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, const Dataset& data,
                       const TransferFunction& function);
 
-/// A frame and the sources of its annotation.
+/// The data from which a frame's annotation is made.
 struct AnnotatedFrame {
   const FilmFrame& frame;
-  Camera camera;  ///< the frame's
-  Dataset data;   ///< its time step
+  Camera camera;  ///< camera of the frame
+  Dataset data;   ///< the frame's time step
   TransferFunction function;
   const RenderOptions& options;
 };
 
-/// Draws a frame's annotation, if there is any, over its image, whatever its size. Throws as annotate().
+/// Draws a frame's annotation, if there is any, over an image of any size. Throws the same errors as annotate().
 void draw_annotation(Image& picture, const AnnotatedFrame& annotated);
 
-/// Writes a frame's images, annotated. With --annotation-layer they are not annotated, and the frame's last output is
-/// the layer. Deep images are never annotated. Throws as PictureWriter::write().
+/// Writes a frame's images with the annotation. With --annotation-layer, the images are not annotated, and the last
+/// output of the frame is the layer. Deep images are never annotated. Throws the same errors as PictureWriter::write().
 void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated, PictureWriter& writer);
 
 }  // namespace tessera::apps

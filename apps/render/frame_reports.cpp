@@ -9,7 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A file name need not be UTF-8; JSON must. Without `indent`, on one line.
+/// Converts to text. Text that is not UTF-8, such as a file name, is replaced, since JSON must be UTF-8. If `indent` is
+/// negative, the text is one line.
 std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }

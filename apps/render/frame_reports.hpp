@@ -6,23 +6,23 @@
 
 namespace tessera::apps {
 
-/// The entries of a run's report for its frames, kept until the end as one text. Trees of JSON consist of many small
-/// blocks: they would need three to four times the memory and fragment a long film's heap.
+/// The entries for frames in a run's report, kept until the end of the run as one text. Trees of JSON consist of many
+/// small blocks of memory. They would need three to four times the memory and fragment the heap in a long film.
 class FrameReports {
  public:
-  /// If not `kept`, no report is requested, and nothing is stored.
+  /// `kept` is false if no report is requested; then nothing is stored.
   explicit FrameReports(bool kept) : kept_(kept) {}
 
-  /// Whether add() stores anything; otherwise the caller need not make it.
+  /// Whether add() stores anything. If not, the caller need not make entries.
   [[nodiscard]] bool kept() const { return kept_; }
   void add(const nlohmann::ordered_json& frame);
 
-  /// `report` with the frames as its last member, `frames`. Text that is not UTF-8 is replaced.
+  /// Returns `report` as text, with the entries as its last member, `frames`. Text that is not UTF-8 is replaced.
   [[nodiscard]] std::string text(const nlohmann::ordered_json& report) const;
 
  private:
   bool kept_;
-  std::string frames_;  ///< JSON, one per line
+  std::string frames_;  ///< the entries as JSON, one per line
 };
 
 }  // namespace tessera::apps

@@ -11,8 +11,9 @@
 namespace tessera::apps {
 namespace {
 
-/// Number of threads that write the frames of a film; zero for images so large that memory should not hold two. One
-/// thread compresses a PNG in about the time in which ten render it; films and annotations are made in order.
+/// Number of threads that write the frames of a film. It is zero if images are so large that memory should not contain
+/// two of them. One thread compresses a PNG in about the time in which ten threads render it. Films and annotations are
+/// written in order, by one thread.
 int writers(const RenderOptions& options, const std::vector<FilmFrame>& frames) {
   constexpr std::int64_t most_pixels = 4096 * 4096;
   constexpr int renderers_a_writer = 8;
@@ -69,8 +70,8 @@ void FrameWriter::write(const FinishedFrame& frame) {
   if (frame.began_us) traces_.writing()->add_frame(frame.number, *frame.began_us);
 }
 
-/// The first half of the frame's outputs shows the bricks, the second half their cost. Films and standard output show
-/// the bricks.
+/// The first half of the frame's outputs receives the image of the bricks, the second half that of their cost. Films
+/// and standard output receive the bricks.
 void FrameWriter::write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) {
   FilmFrame of_bricks = frame;
   of_bricks.outputs.resize(frame.outputs.size() / 2);

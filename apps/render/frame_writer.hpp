@@ -17,30 +17,32 @@
 
 namespace tessera::apps {
 
-/// A rendered frame that is to be written.
+/// A rendered frame to be written.
 struct FinishedFrame {
   std::shared_ptr<const RenderedFrame> rendered;
-  AnnotatedFrame annotated;                  ///< a copy of what its annotation shows: the run may be at another step
-  std::int32_t number = 0;                   ///< of the frame, for the trace
+  AnnotatedFrame annotated;                  ///< a copy, since the run may already be at another step
+  std::int32_t number = 0;                   ///< number of the frame, for the trace
   std::optional<BalancePictures> balance{};  ///< with --show balance
-  std::optional<double> began_us{};          ///< when the frame's span in the trace begins; it ends with the writing
+  std::optional<double> began_us{};          ///< beginning of the frame's span in the trace, which ends when the frame
+                                             ///< is written
 };
 
-/// Writes frames to their files, annotated, on its own threads while the next ones are rendered. Used by the one rank
-/// that writes; on other ranks it has no threads.
+/// Writes frames with their annotation to files, on its own threads, while the next frames are rendered. Used on the
+/// rank that writes; on other ranks it has no threads.
 class FrameWriter {
  public:
-  /// For the planned `frames`. `options` and `traces` must outlive it.
+  /// Makes a writer for the planned `frames`. `options` and `traces` must outlive it.
   FrameWriter(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmTraces& traces,
               bool writes);
 
-  /// Throws the exception of writing an earlier frame.
+  /// Adds a frame to be written. Throws the exception with which an earlier frame could not be written.
   void add(FinishedFrame frame);
-  /// Takes ownership of a frame; once it is written, a later one reuses its image's memory.
+  /// Takes ownership of a frame. After the frame is written, a later frame reuses the memory of its image.
   std::shared_ptr<const RenderedFrame> reusing(RenderedFrame&& rendered);
-  /// Images of earlier frames, whose memory later ones reuse.
+  /// Images of earlier frames, whose memory later frames reuse.
   SpareImages& spare_images() { return spare_images_; }
-  /// Call after the last frame: waits until all are written, then the films appear. Throws as add().
+  /// To be called after the last frame: waits until all frames are written, then makes the films appear. Throws the
+  /// same errors as add().
   void finish();
 
  private:
@@ -53,7 +55,7 @@ class FrameWriter {
   const bool writes_;
   PictureWriter files_;
   SpareImages spare_images_;
-  PictureQueue queue_;  ///< last: what it writes refers to the members above
+  PictureQueue queue_;  ///< must be last: its tasks use the members above
 };
 
 }  // namespace tessera::apps

@@ -10,7 +10,7 @@ namespace tessera::apps {
 PictureQueue::PictureQueue(int writers) {
   try {
     while (std::ssize(threads_) < writers) threads_.emplace_back([this] { run(); });
-  } catch (const std::system_error&) {  // the threads that could be started do the work
+  } catch (const std::system_error&) {  // if a thread cannot be started, the others do the work
   }
 }
 
@@ -45,7 +45,7 @@ void PictureQueue::run() {
     if (waiting_.empty()) return;
     ++busy_;
     {
-      const Write write = std::move(waiting_.front());  // releases its image before the next task is accepted
+      const Write write = std::move(waiting_.front());  // its image is released before the next task is accepted
       waiting_.pop_front();
       changed_.notify_all();
       lock.unlock();

@@ -12,24 +12,25 @@
 
 namespace tessera::apps {
 
-/// Writes images on its own threads while the next ones are rendered. Only a few tasks may wait, so that memory does
-/// not hold a whole film; further calls of add() block.
+/// Writes images on its own threads while the next images are rendered. Only a few tasks may wait, so that memory does
+/// not contain a whole film; further calls of add() block.
 class PictureQueue {
  public:
   using Write = std::function<void()>;
 
-  /// At most `writers` threads, each of which writes one image at a time: one keeps their order; with zero, add()
-  /// writes itself.
+  /// Starts at most `writers` threads, each of which writes one image at a time. A single thread writes the images in
+  /// order. With zero threads, add() writes the images.
   explicit PictureQueue(int writers);
-  /// Writes the remaining images: finished images are kept, whatever ended the run. Errors are dropped; finish() throws
-  /// them.
+  /// Writes the remaining images, so that finished images are kept even if an error ends the run. Errors are ignored;
+  /// callers that need them call finish() before.
   ~PictureQueue();
   PictureQueue(const PictureQueue&) = delete;
   PictureQueue& operator=(const PictureQueue&) = delete;
 
-  /// Throws the exception of an earlier image, after which no other is begun.
+  /// Adds an image to be written. Throws the exception of an earlier image; after an exception no further image is
+  /// begun.
   void add(Write write);
-  /// Waits until all are written. Throws as add().
+  /// Waits until all images are written. Throws the same errors as add().
   void finish();
 
  private:

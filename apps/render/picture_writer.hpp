@@ -14,7 +14,7 @@
 
 namespace tessera::apps {
 
-/// The destinations of a run's images: separate files, films, standard output.
+/// Writes a run's images to their destinations: separate files, films, standard output.
 class PictureWriter {
  public:
   explicit PictureWriter(const RenderOptions& options) : options_(options) {}
@@ -22,12 +22,13 @@ class PictureWriter {
   /// For use before rendering: throws Error(bad_input) if these frames cannot be made into a film.
   static void check(const RenderOptions& options, std::span<const FilmFrame> frames);
 
-  /// Writes the planned outputs of frames in their order, which come first. Deep images are written from `deep`. Throws
-  /// Error(system_failure) if an image can no longer be written, although check_film_outputs() found that it could.
+  /// Writes a frame to its planned outputs. To be called for the frames in their order. Deep images are written from
+  /// `deep`. Throws Error(system_failure) if an image can no longer be written, although check_film_outputs() found
+  /// that it could.
   void write(const Image& image, const DeepImage& deep, const FilmFrame& frame);
-  /// Writes an additional image to its own file. Throws as write().
+  /// Writes an additional image to a file of its own. Throws the same errors as write().
   static void write_file(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
-  /// Call after the last frame: the films appear.
+  /// To be called after the last frame: makes the films appear.
   void finish();
 
  private:

@@ -12,7 +12,7 @@
 namespace tessera::apps {
 namespace {
 
-/// `a.png` and "cost" give a.cost.png.
+/// Adds a suffix to a name: `a.png` and "cost" give a.cost.png.
 std::filesystem::path with_suffix(const std::filesystem::path& image, const std::string& suffix) {
   std::filesystem::path name = image;
   return name.replace_extension().concat("." + suffix).concat(image.extension().string());

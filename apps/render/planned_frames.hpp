@@ -9,7 +9,7 @@
 
 namespace tessera::apps {
 
-/// The frames of a run with all files that each writes. The outputs of one frame are, in this order:
+/// Returns the frames of a run with all their output files. The outputs of one frame are, in this order:
 ///
 ///     as named    the plan's, in all formats
 ///     layers      with --peel, for each of these: `a.exr` has a.layer1.exr, a.layer2.exr ...; none for deep images,
@@ -17,10 +17,11 @@ namespace tessera::apps {
 ///     annotation  with --annotation-layer, one file
 ///     cost maps   with --show balance, for each of the above: `a.png` has a.cost.png
 ///
-/// A frame counts as finished if all of them exist (--resume). Throws as plan_film().
+/// With --resume, a frame is finished if all of these files exist. Throws the same errors as plan_film().
 std::vector<FilmFrame> planned_frames(const RenderOptions& options);
 
-/// The outputs of the whole run: films, report, trace, saved options. Those that were not requested are empty.
+/// Returns the outputs of the whole run: films, report, trace, saved options. The names of outputs that were not
+/// requested are empty.
 std::vector<std::filesystem::path> other_outputs(const RenderOptions& options);
 
 }  // namespace tessera::apps

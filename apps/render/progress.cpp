@@ -20,7 +20,8 @@ constexpr const char* erase_line = "\r\x1b[K";
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// State of the last line of the terminal. Never destroyed: a signal may arrive while the process ends.
+/// State of the last line of the terminal. The object is never destroyed, because a signal may arrive while the process
+/// ends.
 struct LastLine {
   std::timed_mutex mutex;
   bool is_taken = false;
@@ -31,8 +32,8 @@ LastLine& last_line() {
   return *line;
 }
 
-/// Shortens text to one row of the terminal, since a wrapped line could not be erased. File names may contain any
-/// characters.
+/// Shortens text to one row of the terminal, since a wrapped line could not be erased, and makes it printable, since
+/// file names may contain any characters.
 std::string one_row(std::string words) {
   words = printable(words);
   winsize size{};
@@ -44,7 +45,7 @@ std::string one_row(std::string words) {
   return words.substr(0, end);
 }
 
-/// The caller must hold the lock.
+/// Erases the line. The caller must hold the lock.
 void erase() {
   if (last_line().is_taken) fmt::print(stderr, "{}", erase_line);
   std::fflush(stderr);
@@ -77,7 +78,7 @@ void StatusLine::begin(const std::string& stage) {
   stage_start_ = Clock::now();
   reading_.reset();
   done_.reset();
-  if (frames_ > 1 && frames_done_ > 0) return;  // the line of the film stays
+  if (frames_ > 1 && frames_done_ > 0) return;  // the line of the film remains
   const std::lock_guard line(last_line().mutex);
   erase();
 }
@@ -162,7 +163,7 @@ std::string reading_words(const std::string& stage, const std::optional<ReadProg
     words += progress->done < 1
                  ? fmt::format(": {:.0f} % of its points and cells copied", std::floor(100 * progress->done))
                  : std::string(": making tets of its cells");
-  else if (progress && progress->done > 0) {  // some libraries report 0 until they are done
+  else if (progress && progress->done > 0) {  // some libraries report 0 until the end
     return stage_words(stage, progress->done, seconds);
   }
   return words + fmt::format(", {:.0f} s", seconds);
@@ -172,7 +173,7 @@ std::string stage_words(const std::string& stage, std::optional<double> done, do
   std::string words = stage;
   if (done && *done > 0) words += fmt::format(": {:.0f} %", std::floor(100 * std::min(*done, 1.0)));
   words += fmt::format(", {:.0f} s", seconds);
-  // The remaining time is shown from a tenth on: before that the estimate is unreliable.
+  // The remaining time is shown after a tenth of the work; before, the estimate is unreliable.
   if (done && *done >= 0.1 && *done < 1) words += fmt::format(", {:.0f} s left", seconds / *done * (1 - *done));
   return words;
 }

@@ -18,8 +18,8 @@
 namespace tessera::apps {
 
 /// A line on stderr with the current stage of a run, its progress if known, and the remaining time. A separate thread
-/// rewrites it in place; it is erased at the end. It appears once a stage has taken a second, for most runs never, and
-/// in a run of many frames as soon as one is finished.
+/// updates the line in place; the line is erased at the end. It appears when a stage has taken a second, which never
+/// happens in most runs, and in a run of many frames as soon as a frame is finished.
 class StatusLine {
  public:
   /// Shows nothing unless `shown`.
@@ -30,18 +30,20 @@ class StatusLine {
 
   [[nodiscard]] bool shown() const { return thread_.joinable(); }
 
-  /// Sets the current stage, "reading a.vtu"; empty: not shown.
+  /// Sets the current stage, like "reading a.vtu". If it is empty, no line is shown.
   void begin(const std::string& stage);
-  /// Progress of that stage. May be called from any thread.
+  /// Sets the completed fraction of the stage. May be called from any thread.
   void advance(double done);
-  /// For ReadOptions::progress, while a file is read, as long as this object exists; null unless the line is shown.
+  /// Returns a callback for ReadOptions::progress, which may be used as long as this object exists; null unless the
+  /// line is shown.
   [[nodiscard]] ReadProgressFunction listener();
-  /// `done` frames are finished, `rendered` of them in this run (--resume skips the others immediately).
+  /// Reports that `done` frames are finished, of these `rendered` in this run; the others were skipped by --resume.
   void finish_frames(std::size_t done, std::size_t rendered);
 
-  /// Erases the line while the returned lock is held, so that other lines can be printed.
+  /// Erases the line and prevents it from appearing again while the returned lock is held, so that other lines can be
+  /// printed.
   [[nodiscard]] static std::unique_lock<std::timed_mutex> away();
-  /// Erases any line permanently. For a run that exits early.
+  /// Erases all lines permanently. For a run that exits early.
   static void end_all();
 
  private:
@@ -70,17 +72,18 @@ class FrameProgress final : public Sink {
   double pixels_, finished_ = 0;
 };
 
-/// Opens a file and shows such a line.
+/// Opens a file and shows the progress in `line`.
 Dataset open_watched(const InputFile& file, ReadOptions options, StatusLine& line);
 
-/// Whether a command without other progress output shows the line: stderr is a terminal, and it is not `quiet`.
+/// Whether a command without other progress output shows the line: if stderr is a terminal and the command is not
+/// `quiet`.
 bool shows_progress(bool quiet);
 
-/// The text of the line while a file is read, after `seconds`; without `progress` nothing more is known.
+/// The text of the line while a file is read, after `seconds`. `progress` is empty if the progress is unknown.
 std::string reading_words(const std::string& stage, const std::optional<ReadProgress>& progress, double seconds);
 
-/// The same for any other stage, whose progress `done` may be unknown: includes the remaining time at the present rate
-/// once the estimate is reliable.
+/// The text of the line for any other stage. `done` is empty if the progress is unknown. The text includes the
+/// remaining time at the present rate as soon as this estimate is reliable.
 std::string stage_words(const std::string& stage, std::optional<double> done, double seconds);
 
 }  // namespace tessera::apps

@@ -37,7 +37,7 @@ std::string method_words(const Settings& settings) {
   return words;
 }
 
-/// How the work was shared between ranks, if there are several.
+/// Text that describes how the work was shared between ranks, if there are several.
 std::string balance_words(const RenderOptions& options, const FrameRecord& record) {
   const auto& by_rank = record.statistics.samples;
   if (by_rank.size() < 2) return {};
@@ -289,7 +289,8 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
 }
 
 std::string verification_line(const Verification& v, int frame_number) {
-  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // of the image alone
+  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // whether the image alone, without its
+                                                                           // layers, meets the bound
   const auto verdict =
       v.bound ? fmt::format("bound {:.3g} {}", *v.bound, met ? "met" : "NOT met") : std::string("no bound promised");
   std::string line =

@@ -13,30 +13,33 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/verification.hpp"
 
-/// What a run chose and did, as JSON (--report, info --json) and as the one line on stderr, for meshes and grids.
+/// Descriptions of what a run chose and did, for meshes and grids: as JSON (--report, info --json) and as one line on
+/// stderr.
 namespace tessera::apps {
 
 /// Results of one rendered frame, for all ranks together.
 struct FrameRecord {
   Camera camera;
   FrameStatistics statistics;
-  std::vector<double> frame_ms;  ///< one per repetition
+  std::vector<double> frame_ms;  ///< times of all repetitions
   std::optional<Verification> verification;
 };
 
-/// The description of a data set for lines and reports; its notes use option names.
+/// The description of a data set for lines and reports. Its notes contain names of options instead of settings.
 analysis::Description described(const Dataset& data);
 
-/// How much the tets of higher-order cells change pixels, and that it is more than `accuracy` if so.
+/// A note that states how much the division of higher-order cells into tets changes pixels, and whether this is more
+/// than `accuracy`.
 std::string higher_order_note(double error, double accuracy);
 
-/// The choices of settings and command line, except data, view and transfer function.
+/// The method as chosen by settings and command line: everything except data, view and transfer function.
 nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);
 
 /// The layout of a job that renders a mesh.
 nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const Roles& roles);
 
-/// A frame's number, images, view, times, counters, balance and verification; without a record, that it was skipped.
+/// A frame's number, images, view, times, counters, balance and verification. Without a record, the entry states that
+/// the frame was skipped.
 nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);
 
 /// `18 of 20 cells kept as 36 tets, 1 ghost dropped, 1 tangled kept`
@@ -50,7 +53,7 @@ std::string transfer_function_line(const LoadedTransferFunction& loaded);
 std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmFrame& frame,
                        const FrameRecord& record);
 
-/// The one line of a run, after its first frame: what was read, chosen and culled, and the time of the frame.
+/// The line that a run prints after its first frame: what was read, chosen and culled, and the time of the frame.
 std::string run_line(const RenderOptions& options, const analysis::Description& data,
                      const LoadedTransferFunction& loaded, const std::vector<FilmFrame>& frames, const FilmFrame& first,
                      const FrameRecord& record);

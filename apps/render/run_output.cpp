@@ -27,7 +27,7 @@ std::string frame_ms_line(std::vector<double> times) {
 }
 
 void write_json(const Json& json, const std::filesystem::path& path) {
-  // A file name need not be UTF-8; JSON must.
+  // Text that is not UTF-8, such as a file name, is replaced, since JSON must be UTF-8.
   write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -44,7 +44,7 @@ void ShownStep::open_first() {
     open(frames_.front(), read_);
   find_function();
   check_outputs_are_not_read();
-  job_.require_same_files();  // including the transfer function's
+  job_.require_same_files();  // including the file of the transfer function
   read_within_accuracy();
   shade_by_default();
   if (job_.rank() == writing_rank_) check_annotation(options_.annotation, frames_.front(), *data_, loaded_.function);
@@ -90,12 +90,12 @@ void ShownStep::read_block_surfaces(const std::vector<std::filesystem::path>& fi
       with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
 }
 
-/// Chooses field and colours for several steps if options do not state them. Leaves the first step open.
+/// Chooses field and colours for several steps if options do not specify them. Leaves the first step open.
 void ShownStep::choose_for_all_steps() {
   const auto frame_of = [&](std::size_t step) -> const FilmFrame& {
     return *std::ranges::find(frames_, step, &FilmFrame::step);
   };
-  // All ranks use the writing rank's view of the disk.
+  // All ranks use the list of existing steps that the writing rank finds on its disk.
   std::vector<std::size_t> steps = steps_to_examine(this->steps());
   std::vector<std::byte> there;
   there.reserve(steps.size());
@@ -121,7 +121,8 @@ void ShownStep::choose_for_all_steps() {
   if (series_->function) loaded_ = *series_->function;
 }
 
-/// Divides higher-order cells as finely as --accuracy requires; the tolerance of the first image applies to all.
+/// Divides higher-order cells as finely as --accuracy requires. The tolerance found for the first image is used for all
+/// images.
 void ShownStep::read_within_accuracy() {
   if (data_->higher_order_cells().divided == 0) return;
   const FilmFrame& frame = frames_.front();
@@ -159,7 +160,8 @@ void ShownStep::shade_by_default() {
 
 void ShownStep::note_method() { output_.note("method", method_json(options_, job_.size())); }
 
-/// Files named by the input's files are only known once these are read. On every rank: each has read its own part.
+/// Throws if an output is a file that has been read. Files to which the input's files refer are only known after these
+/// have been read. Every rank checks, because each has read its own part.
 void ShownStep::check_outputs_are_not_read() const {
   for (const FilmFrame& frame : frames_)
     for (const auto& output : frame.outputs) check_not_read(output);
@@ -172,7 +174,7 @@ analysis::Description ShownStep::description() const {
   if (series_) data.notes.push_back(series_note(*series_, steps(), data_->field_name()));
   if (data_->higher_order_cells().divided == 0) return data;
   data.higher_order_pixels = higher_order_pixels_;
-  // There is already a warning about cells drawn by their corners.
+  // Another warning already reports cells that are drawn by their corners.
   if (data.higher_order.by_corners > 0) return data;
   const double error = higher_order_pixels_, accuracy = options_.higher_order_accuracy.value_or(error);
   (error > accuracy ? data.warnings : data.notes).push_back(higher_order_note(error, accuracy));

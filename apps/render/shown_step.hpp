@@ -18,18 +18,19 @@
 
 namespace tessera::apps {
 
-/// The open time step of a run, one at a time, and what the first step determines for all: view, field, transfer
-/// function, tolerance of higher-order cells. On every rank; show() is collective.
+/// The open time step of a run (one at a time), and the properties of the first step that are used for all steps: view,
+/// field, transfer function, tolerance of higher-order cells. Every rank has this object; show() is collective.
 class ShownStep {
  public:
-  /// `frames` get the times that their files state. `options` are completed with what is known once data are read:
-  /// surfaces of blocks, default shading. `writing_rank` writes the files. All references must outlive it.
+  /// The times that the files state are written to `frames`. `options` are completed when data are read, with surfaces
+  /// of blocks and default shading. `writing_rank` writes the files. The referenced objects must outlive this object.
   ShownStep(RenderOptions& options, std::vector<FilmFrame>& frames, RunOutput& output, Job& job, int writing_rank,
             Trace* trace);
 
-  /// Opens and prepares the frame's step, unless it is open. Throws Error, also if an output is one of the files read.
+  /// Opens and prepares the frame's step unless it is already open. Throws Error, also if an output is one of the files
+  /// that were read.
   void show(const FilmFrame& frame);
-  /// Whether show() was called; the functions below require it.
+  /// Whether show() has been called, which the functions below require.
   [[nodiscard]] bool is_open() const { return first_.has_value(); }
 
   [[nodiscard]] Camera camera(const FilmFrame& frame) const {
@@ -38,9 +39,9 @@ class ShownStep {
   [[nodiscard]] const Dataset& data() const { return *data_; }
   [[nodiscard]] const TransferFunction& function() const { return loaded_.function; }
   [[nodiscard]] Session& session() { return *session_; }
-  /// Of the first step; 0 for grids.
+  /// Number of tets of the first step; 0 for grids.
   [[nodiscard]] std::uint64_t tets() const { return first_ ? first_->tets : 0; }
-  /// Ends the session, and so its spans in the trace.
+  /// Ends the session and thereby its spans in the trace.
   void close_session() { session_.reset(); }
 
   /// Prints the warnings that need the whole run: values outside the range for which the transfer function was chosen,
@@ -79,13 +80,13 @@ class ShownStep {
   ReadOptions read_;
 
   std::optional<Dataset> data_;
-  std::size_t step_ = 0;  ///< of data_
+  std::size_t step_ = 0;  ///< number of the step in data_
   std::optional<Session> session_;
   LoadedTransferFunction loaded_;
-  std::optional<SeriesChoice> series_;  ///< for several steps
-  std::optional<First> first_;          ///< none until a step is shown
-  std::optional<Range> colored_range_;  ///< of the values for which the transfer function was chosen
-  Range whole_range_{};                 ///< of all steps read
+  std::optional<SeriesChoice> series_;  ///< chosen field and colours for several steps
+  std::optional<First> first_;          ///< none until a step has been shown
+  std::optional<Range> colored_range_;  ///< range of the values for which the transfer function was chosen
+  Range whole_range_{};                 ///< range of the values of all steps that were read
   double higher_order_pixels_ = 0;      ///< HigherOrderRead::pixel_error of the first step
 };
 

@@ -11,15 +11,15 @@
 
 namespace tessera::apps {
 
-/// Images that are no longer needed, whose memory later ones reuse: at most two, so that memory does not hold a whole
-/// film. May be used from any thread.
+/// Images that are no longer needed and whose memory later images reuse. At most two are kept, to limit memory. May be
+/// used from any thread.
 class SpareImages {
  public:
   void keep(Image image) {
     const std::lock_guard lock(mutex_);
     if (images_.size() < most) images_.push_back(std::move(image));
   }
-  /// An image of this size, if there is one; those of other sizes are dropped.
+  /// Returns an image of this size, if there is one. Images of other sizes are dropped.
   Image take(ImageSize size) {
     const std::lock_guard lock(mutex_);
     images_.erase(
