@@ -12,7 +12,7 @@
 namespace tessera::server {
 namespace {
 
-/// Compares in a time that does not depend on how many characters match.
+/// Compares two texts in a time that does not depend on how many characters match.
 bool same(std::string_view given, std::string_view token) {
   if (given.size() != token.size()) return false;
   unsigned char differ = 0;
@@ -20,7 +20,7 @@ bool same(std::string_view given, std::string_view token) {
   return differ == 0;
 }
 
-/// Whether the name is an address of 127.0.0.0/8 in four numbers, not a name that begins like one.
+/// Whether the name is an address of 127.0.0.0/8 as four numbers, and not a name that only begins like such an address.
 bool is_loopback_v4(std::string_view name) {
   if (!name.starts_with("127.") || std::ranges::count(name, '.') != 3) return false;
   return std::ranges::all_of(name, [](char c) { return c == '.' || is_digit(c); });
@@ -28,7 +28,7 @@ bool is_loopback_v4(std::string_view name) {
 
 bool is_loopback(std::string_view name) { return name == "localhost" || name == "::1" || is_loopback_v4(name); }
 
-/// `host:port` without the default port of its scheme.
+/// Returns `host:port`, without the port if it is the default port of its scheme.
 std::string plain_authority(std::string_view authority, std::string_view port) {
   std::string result = lower_case(authority);
   if (result.ends_with(port)) result.resize(result.size() - port.size());

@@ -8,37 +8,38 @@
 
 namespace tessera::server {
 
-/// The headers and the query that decide whether a request is allowed, as received.
+/// The headers and the query, as received, that determine whether a request is allowed.
 struct Credentials {
   std::string_view host, origin, authorization, protocols, query;  ///< protocols: Sec-WebSocket-Protocol
   std::string_view token{};                                        ///< X-Tessera-Token
 };
 
-/// The subprotocol of the WebSocket. A page offers it together with the token, which it cannot send in another header.
+/// The subprotocol of the WebSocket. A page offers this name together with the token, since it cannot send the token in
+/// another header.
 constexpr std::string_view socket_protocol = "tessera";
 
-/// Access control: requests need the token of this run, and must come from a page of this server.
+/// Access control: a request must contain the token of this run and must come from a page of this server.
 ///
-/// Token   128 random bits as hex: `Authorization: Bearer T`, `X-Tessera-Token: T` if a proxy uses Authorization
-///         itself, `?token=T` in the query, or for a WebSocket the subprotocol `token.T`. Not a cookie: browsers send
-///         cookies to every port of a machine.
-/// Host    a loopback name with any port (as behind an SSH tunnel), the bound address, or an allowed name. Otherwise a
-///         page of another site, whose name resolves to this machine, could send requests as if it came from this
-///         server.
-/// Origin  if present, the Host's, or that of an allowed name.
+/// Token   The token T is 128 random bits as hex. It is sent as `Authorization: Bearer T`, as `X-Tessera-Token: T` if a
+///         proxy uses Authorization itself, as `?token=T` in the query, or, for a WebSocket, as the subprotocol
+///         `token.T`. It is not a cookie, because browsers send cookies to every port of a machine.
+/// Host    The host must be a loopback name with any port (as behind an SSH tunnel), the bound address, or an allowed
+///         name. Otherwise a page of another site, whose name resolves to this machine, could send requests as if the
+///         page came from this server.
+/// Origin  If present, it must be that of the Host or of an allowed name.
 class Access {
  public:
-  /// For a new run, with a random token. `bound` is the address on which the server listens.
+  /// Access control for a new run, with a random token. `bound` is the address on which the server listens.
   Access(const std::string& bound, const std::vector<std::string>& allowed_hosts);
-  /// With the given token.
+  /// Access control with the given token.
   Access(std::string token, const std::string& bound, const std::vector<std::string>& allowed_hosts);
 
   [[nodiscard]] const std::string& token() const { return token_; }
 
-  /// The reason for refusing the request, one sentence; none if it is allowed.
+  /// Returns one sentence with the reason for refusing the request; none if the request is allowed.
   [[nodiscard]] std::optional<std::string> refusal(const Credentials& credentials) const;
-  /// The same for the files of the page. They are public: the page must load before it can send the token, and it
-  /// explains a refusal itself.
+  /// Returns the reason for refusing a file of the page; none if it is allowed. These files do not require the token:
+  /// the page must load before it can send the token, and it explains a refusal itself.
   [[nodiscard]] std::optional<std::string> page_refusal(std::string_view host) const;
 
  private:
@@ -49,18 +50,19 @@ class Access {
   std::vector<std::string> allowed_;
 };
 
-/// Whether a comma-separated list of a header has this word.
+/// Whether the comma-separated list in a header contains this word.
 bool lists_word(std::string_view list, std::string_view word);
 
-/// The name in `name:port`, `[::1]:port` or a name alone, in lower case; empty for any other text.
+/// Returns, in lower case, the name in `name:port`, in `[::1]:port` or in a name without a port; empty for any other
+/// text.
 std::string host_name(std::string_view host);
 
-/// `count` random bytes from the system as hex. Throws Error(system_failure).
+/// Returns `count` random bytes from the system, as hex. Throws Error(system_failure).
 std::string random_hex(std::size_t count);
 
 /// The decoded value of `name` in a query; none if it is missing or its escapes are invalid.
 std::optional<std::string> query_value(std::string_view query, std::string_view name);
-/// Decodes the escapes of an address; none if they are invalid. `plus`: a plus means a blank.
+/// Decodes the escapes of an address. Returns none if they are invalid. If `plus`, a plus sign stands for a blank.
 std::optional<std::string> decoded(std::string_view text, bool plus);
 
 }  // namespace tessera::server

@@ -83,7 +83,7 @@ class PlainWork final : public ApiWork {
     return probe_answer(context_, open, *body_);
   }
 
-  /// A request for the data's description is answered with the reading progress; others wait.
+  /// While data are being read, a request for their description is answered with the progress; all other requests wait.
   ApiResult wait() {
     if (request_.path != "api/data") return {std::nullopt, true};
     Json text = {{"reading", true}, {"stage", "reading"}, {"fraction", nullptr}};

@@ -97,12 +97,12 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
   if (!data.shows_shape()) state["field"] = open.scene->field_word(data);
   const std::uint64_t steps = std::max<std::uint64_t>(data.time_steps(), context.reader.times().size());
   if (steps > 1 && !state.contains("time-step")) {
-    const Json base = context.reader.base();  // for a series, its first step
+    const Json base = context.reader.base();  // for a series, the state includes the first step
     const auto begun_with = base.find("time-step");
     state["time-step"] = begun_with != base.end() ? *begun_with : Json(fmt::format("{}", steps - 1));
   }
   if (!state.contains("transfer-function")) {
-    // The exact function of the first image, which depends on how the field's values are distributed over the volume.
+    // The knots are those of the first image. They depend on how the field's values are distributed over the volume.
     for (const OptionRow* row : option_rows(Trait::knots)) {
       const std::string in_it(row->key());
       if (context.reader.fixes(in_it))

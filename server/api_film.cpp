@@ -21,7 +21,8 @@ namespace {
 constexpr std::int64_t most_frames = 10'000, most_views = 1000;
 constexpr std::array<std::string_view, 3> film_formats = {"mp4", "webm", "gif"};
 
-/// Interpolates between two directions along the great circle; opposite ones have none, and change midway.
+/// Interpolates between two directions along the great circle. Opposite directions do not define one: the result
+/// changes from one to the other in the middle.
 glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
   const double lengths = glm::length(from) * glm::length(to);
   if (!(lengths > 0)) return t < 0.5 ? from : to;
@@ -33,7 +34,7 @@ glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
          (length / std::sin(angle));
 }
 
-/// Distances and scales are interpolated by ratio, directions by angle.
+/// Interpolates between two cameras: distances and scales by ratio, directions by angle.
 Camera between(const Camera& from, const Camera& to, double t) {
   if (t <= 0) return from;
   if (t >= 1) return to;
@@ -72,7 +73,7 @@ class FilmWork final : public ApiWork {
     try {
       return make_frame();
     } catch (const Error& error) {
-      // The temporary directory, and other names for the file, mean nothing to a client.
+      // The names of the temporary directory and file have no meaning for a client.
       if (!error.subject().starts_with(name_.native())) throw;
       throw Error(error.code(), "film", error.problem(),
                   "see that ffmpeg works on the server's machine (Debian: apt install ffmpeg)");
@@ -81,7 +82,7 @@ class FilmWork final : public ApiWork {
 
  private:
   ApiResult make_frame() {
-    // The file never gets its name: nothing remains of it, however this process ends.
+    // The file is never given its name, so nothing remains of it, however this process ends.
     if (!film_) film_.emplace(name_, first_.size, FilmFileOptions{scene_->image_options(), plan_.rate});
     const View view{plan_.camera(made_, first_.camera), first_.size};
     YieldingSink sink(context_.precedence, stop_, [](const Tile& /*tile*/) {});
@@ -94,7 +95,7 @@ class FilmWork final : public ApiWork {
     Response response{200, plan_.format == "gif" ? "image/gif" : "video/" + plan_.format,
                       std::make_shared<const std::string>(film_->take())};
     response.file_name = "film." + plan_.format;
-    context_.film.set(std::nullopt);  // before any client has the film
+    context_.film.set(std::nullopt);  // must precede the delivery of the film to any client
     return {std::move(response)};
   }
 

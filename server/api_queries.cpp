@@ -15,7 +15,7 @@ namespace {
 
 Json place_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// null if the value is not finite, which JSON cannot represent.
+/// Returns the value, or null if it is not finite, which JSON cannot represent.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json point_json(const std::optional<RayPoint>& point, const char* name) {

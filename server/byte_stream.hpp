@@ -20,15 +20,16 @@ class context;
 
 namespace tessera::server {
 
-/// One connection's stream of bytes, plain or through TLS. All operations take handlers of one type, so that ByteStream
-/// instantiates the large templates of Boost.Beast (HTTP, WebSocket) once for both.
+/// The stream of bytes of a connection, plain or encrypted by TLS. All operations take handlers of one type, so that
+/// ByteStream instantiates the large templates of Boost.Beast (HTTP, WebSocket) only once for both.
 ///
-/// Threads  used on the network's thread alone; `done` is called there, after the function has returned.
-/// Limits   tcp() has the timer of the pending operations.
+/// Threads  The stream is only used on the network's thread. `done` is called on that thread, after the function has
+///          returned.
+/// Limits   tcp() contains the timer for the pending operations.
 class Bytes {
  public:
   using Done = std::function<void(boost::system::error_code, std::size_t)>;
-  /// Most pieces of memory in one operation; unused ones are empty.
+  /// Largest number of pieces of memory in one operation; unused pieces are empty.
   static constexpr std::size_t most_pieces = 8;
   using ReadPieces = std::array<boost::asio::mutable_buffer, most_pieces>;
   using WritePieces = std::array<boost::asio::const_buffer, most_pieces>;
@@ -39,18 +40,18 @@ class Bytes {
   virtual ~Bytes() = default;
 
   virtual boost::beast::tcp_stream& tcp() = 0;
-  /// Must be the first operation; a plain connection completes at once.
+  /// Must be the first operation. For a plain connection it completes at once.
   virtual void handshake(std::function<void(boost::system::error_code)> done) = 0;
   virtual void read_some(const ReadPieces& pieces, Done done) = 0;
   virtual void write_some(const WritePieces& pieces, Done done) = 0;
-  /// Ends sending from this side, as a WebSocket does after its last frame.
+  /// Ends sending on this side, as a WebSocket does after its last frame.
   virtual void shut_down(std::function<void(boost::system::error_code)> done) = 0;
 };
 
 std::unique_ptr<Bytes> plain_bytes(boost::asio::ip::tcp::socket socket);
 std::unique_ptr<Bytes> tls_bytes(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context& tls);
 
-/// Bytes as Boost.Asio's AsyncReadStream and AsyncWriteStream.
+/// Adapts Bytes to the AsyncReadStream and AsyncWriteStream of Boost.Asio.
 class ByteStream {
  public:
   using executor_type = boost::asio::any_io_executor;
@@ -98,7 +99,7 @@ class ByteStream {
   std::unique_ptr<Bytes> bytes_;
 };
 
-/// Beast's WebSocket calls it to end a connection in order, or when a time limit is exceeded.
+/// Called by Beast's WebSocket to end a connection in an orderly way, or when a time limit is exceeded.
 template <class Handler>
 void async_teardown(boost::beast::role_type /*role*/, ByteStream& stream, Handler&& handler) {
   stream.bytes().shut_down([shared = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler))](

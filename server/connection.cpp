@@ -69,7 +69,7 @@ std::pair<std::string_view, std::string_view> split_target(std::string_view targ
   return {target.substr(0, mark), target.substr(mark + 1)};
 }
 
-/// Whether the path is answered with JSON and not with a page.
+/// Whether a request for the path is answered with JSON instead of a page.
 bool is_api(std::string_view path) {
   return path.starts_with("api/") || path == "picture" || path == "film" || path == "socket";
 }
@@ -95,7 +95,7 @@ Response page_response(int status, std::string text) {
   return {status, "text/html; charset=utf-8", std::make_shared<const std::string>(std::move(text))};
 }
 
-/// A client's WebSocket: passes its messages to the service, and queues what the service sends.
+/// A client's WebSocket: passes the client's messages to the service, and queues the messages that the service sends.
 class Socket final : public std::enable_shared_from_this<Socket> {
  public:
   Socket(ByteStream stream, Network& network) : stream_(std::move(stream)), network_(network) {}
@@ -107,7 +107,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
   Socket& operator=(const Socket&) = delete;
 
   void start(HttpRequest request) {
-    stream_.next_layer().tcp().expires_never();  // the WebSocket's own limits apply from here on
+    stream_.next_layer().tcp().expires_never();  // from now on, the WebSocket's own limits apply
     websocket::stream_base::timeout limits = websocket::stream_base::timeout::suggested(beast::role_type::server);
     limits.handshake_timeout = network_.limits.request;
     stream_.set_option(limits);
@@ -142,7 +142,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     SharedBytes image;
   };
 
-  /// The service's handle of the socket, a weak reference.
+  /// The service's handle of the socket; it contains a weak reference.
   class ClientChannel final : public Channel {
    public:
     explicit ClientChannel(const std::shared_ptr<Socket>& socket)
@@ -179,7 +179,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       if (error) return self->drop();
       if (!self->stream_.got_text()) return self->read_next();
-      // The next message is read after this one is handled, so that each client has one at a time.
+      // The next message is read after this one has been handled, so that each client has only one message in work.
       boost::asio::post(self->network_.parsing, [self] {
         self->network_.service.message(*self->client_, beast::buffers_to_string(self->buffer_.data()));
         boost::asio::post(self->stream_.get_executor(), [self] { self->read_next(); });
@@ -220,7 +220,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     stream_.async_close(websocket::close_code::normal, [self = shared_from_this()](error_code /*error*/) {});
   }
 
-  /// Closes without notice: the other side is gone or does not read.
+  /// Closes the connection without notice, because the other side is gone or does not read.
   void drop() {
     closed_ = true;
     stream_.next_layer().tcp().close();
@@ -235,7 +235,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
   bool closing_ = false, closed_ = false;
 };
 
-/// HTTP requests of one connection, one after the other.
+/// Handles the HTTP requests of one connection, one after the other.
 class Connection final : public Stranger, public std::enable_shared_from_this<Connection> {
  public:
   Connection(ByteStream stream, Network& network)
@@ -245,7 +245,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
   }
   ~Connection() override {
     forget_stranger();
-    if (is_client_ && !is_socket_) --network_.connections;  // the socket counts otherwise
+    if (is_client_ && !is_socket_) --network_.connections;  // a socket counts the connection itself
     gone_.request_stop();
   }
   Connection(const Connection&) = delete;
@@ -271,7 +271,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     stranger_.reset();
   }
 
-  /// Counts a connection that has shown the token. False if there are too many.
+  /// Counts a connection that has sent the token. Returns false if there are too many.
   bool admit() {
     if (is_client_) return true;
     if (network_.connections >= network_.limits.connections) return false;
@@ -291,7 +291,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     });
   }
 
-  /// Answers a request that could not be read if the client is still there, and ends the connection.
+  /// Answers a request that could not be read, if the client is still connected, and ends the connection.
   void answer_broken(const error_code& error) {
     int status = 0;
     if (error == http::error::body_limit)
@@ -316,7 +316,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     const auto path = decoded(raw_path.starts_with('/') ? raw_path.substr(1) : raw_path, false);
     if (!path || !raw_path.starts_with('/'))
       return send(make_response(request_, error_response(400, "The address cannot be read.")));
-    // A proxy might use the other Host.
+    // With two Host headers, a proxy might use the other one.
     if (request_.count(http::field::host) > 1)
       return send(make_response(request_, error_response(400, "The request has more than one Host.")));
     const auto refused = [&](int status, const std::string& sentence) {
@@ -361,7 +361,8 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
                               boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)] {
                                 self->waiting_ = false;
                                 error_code none;
-                                self->tcp().socket().cancel(none);  // ends the watch for a closed connection
+                                self->tcp().socket().cancel(none);  // ends the operation that detects a closed
+                                                                    // connection
                                 self->send(make_response(self->request_, answer));
                               });
                             });
@@ -386,7 +387,8 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     write_some();
   }
 
-  /// Writes piece by piece, so that the time limit applies to a piece: the whole may be long and the connection slow.
+  /// Writes the response piece by piece. The time limit applies to each piece, since a long response may take long on a
+  /// slow connection.
   void write_some() {
     tcp().expires_after(network_.limits.write);
     http::async_write_some(stream_, *serializer_, [self = shared_from_this()](error_code error, std::size_t /*b*/) {
@@ -407,8 +409,8 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     pass_over(0);
   }
 
-  /// Discards what arrives after the last answer: closing with unread bytes could lose the answer for a client that
-  /// still sends.
+  /// Discards bytes that arrive after the last answer. If the connection were closed with unread bytes, a client that
+  /// is still sending could lose the answer.
   void pass_over(std::size_t passed) {
     constexpr std::size_t most = 64u << 20;
     if (passed > most) return tcp().close();
@@ -427,7 +429,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
   std::optional<HttpResponse> response_;
   std::optional<http::response_serializer<SharedBody>> serializer_;
   std::stop_source gone_;
-  std::optional<std::list<Stranger*>::iterator> stranger_;  ///< its place in Network::strangers
+  std::optional<std::list<Stranger*>::iterator> stranger_;  ///< position of this connection in Network::strangers
   bool waiting_ = false, is_client_ = false, is_socket_ = false;
 };
 

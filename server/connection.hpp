@@ -18,14 +18,14 @@ namespace tessera::server {
 
 class Bytes;
 
-/// A connection that has not shown the token.
+/// A connection that has not sent the token yet.
 class Stranger {
  public:
   Stranger() = default;
   Stranger(const Stranger&) = delete;
   Stranger& operator=(const Stranger&) = delete;
   virtual ~Stranger() = default;
-  /// Closes it without an answer, and removes it from Network::strangers.
+  /// Closes the connection without an answer and removes it from Network::strangers.
   virtual void turn_away() = 0;
 };
 
@@ -34,13 +34,13 @@ struct Network {
   const Access& access;
   Service& service;
   NetworkLimits limits;
-  boost::asio::thread_pool& parsing;  ///< handles messages of sockets, as a long one takes a while
-  std::size_t connections = 0;        ///< of clients that have shown the token
-  std::list<Stranger*> strangers{};   ///< the oldest first
-  std::size_t writing = 0;            ///< responses and messages in progress
+  boost::asio::thread_pool& parsing;  ///< handles messages of sockets, since parsing a long message takes time
+  std::size_t connections = 0;        ///< number of connections of clients that have sent the token
+  std::list<Stranger*> strangers{};   ///< connections without the token, the oldest first
+  std::size_t writing = 0;            ///< number of responses and messages in progress
 };
 
-/// Handles a connection until it ends: HTTP requests one after the other, or a WebSocket.
+/// Handles a connection until it ends: HTTP requests, one after the other, or a WebSocket.
 void start_connection(std::unique_ptr<Bytes> bytes, Network& network);
 
 }  // namespace tessera::server

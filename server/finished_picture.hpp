@@ -11,11 +11,12 @@ namespace tessera::server {
 
 enum class PictureFormat { png, jpeg, exr };
 
-/// A rendered image as the bytes of the file that `tessera render` writes for the scene, including its annotation.
+/// Returns a rendered image, with its annotation, as the bytes of the file that `tessera render` would write for the
+/// scene.
 SharedBytes finished_picture(Image image, PictureFormat format, const Scene& scene, const View& view,
                              const Dataset& data, const TransferFunction& function);
 
-/// The same without the annotation.
+/// Does the same without the annotation.
 SharedBytes bare_picture(const Image& image, PictureFormat format, const Scene& scene);
 
 const char* media_type(PictureFormat format);

@@ -9,8 +9,8 @@
 
 namespace tessera::server {
 
-/// A binary message without the bytes of the image that follow it: the header's length, 32 bits, little endian, and the
-/// header.
+/// The beginning of a binary message, without the image's bytes that follow: the length of the header, as 32 bits in
+/// little endian, and the header.
 std::string frame_head(const Json& header);
 
 /// JSON as text; invalid UTF-8, which file names may contain, is replaced.

@@ -7,10 +7,10 @@
 namespace tessera::server {
 namespace {
 
-/// The part of a frame's time that does not depend on its pixels: a compromise between meshes whose cells cover many
-/// pixels and those whose cells cover none.
+/// The assumed part of a frame's time that does not depend on the number of pixels. It is a compromise between meshes
+/// whose cells cover many pixels and meshes whose cells cover none.
 constexpr double part_of_data = 0.3;
-/// The size only grows if the estimated time is below this fraction of the budget, so that it does not oscillate.
+/// The size only grows if the estimated time is below this fraction of the budget, so that the size does not oscillate.
 constexpr double room = 0.85;
 
 double pixels(std::size_t shrink) { return 1 / (shrinks.at(shrink) * shrinks.at(shrink)); }
@@ -29,7 +29,7 @@ std::size_t LevelChoice::fitting(std::size_t from, double ms) const {
 }
 
 void LevelChoice::took(std::size_t shrink, bool preview, double ms) {
-  if (preview != preview_) return;  // measured before the data or the preview changed
+  if (preview != preview_) return;  // the time was measured before the data or the preview changed
   measured_ = true;
   if (ms > budget_ms_) {
     const std::size_t to = fitting(shrink, ms);

@@ -65,7 +65,7 @@ struct Listener::State {
   void accept() {
     acceptor.async_accept([this](error_code error, tcp::socket socket) {
       if (!acceptor.is_open()) return;
-      if (error) {  // probably out of file descriptors: try again later
+      if (error) {  // probably there are no more file descriptors: try again later
         pause.expires_after(std::chrono::milliseconds(100));
         pause.async_wait([this](error_code stopped) {
           if (!stopped) accept();
@@ -79,9 +79,9 @@ struct Listener::State {
     });
   }
 
-  Network network;  // outlives the connections, which end when `io` does
+  Network network;  // must outlive the connections, which end with `io`
   asio::io_context io{1};
-  asio::thread_pool parsing{1};  // destroyed before `io`, whose sockets its work uses
+  asio::thread_pool parsing{1};  // must be destroyed before `io`, because its work uses sockets of `io`
   asio::executor_work_guard<asio::io_context::executor_type> until_stopped{io.get_executor()};
   std::shared_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor{io};

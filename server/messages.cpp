@@ -11,7 +11,8 @@
 namespace tessera::server {
 namespace {
 
-/// A page's state has a few hundred values, one with a dense transfer function some ten thousand.
+/// Largest number of values in a message. A page's state has a few hundred values; with a dense transfer function it
+/// has some ten thousand.
 constexpr std::size_t most_values = 100'000;
 
 Json parse_object(std::string_view text, const char* what) {
@@ -57,7 +58,7 @@ std::int64_t whole_number(const Json& body, const char* name, std::int64_t other
   const auto found = body.find(name);
   if (found == body.end()) return otherwise;
   const bool is_whole = found->is_number_integer();
-  // Unsigned numbers beyond int64 are too large in any case.
+  // Unsigned numbers beyond int64 are always too large.
   const bool fits = is_whole && (!found->is_number_unsigned() || found->get<std::uint64_t>() <= std::uint64_t(high));
   if (!fits || found->get<std::int64_t>() < low || found->get<std::int64_t>() > high)
     throw bad_input(fmt::format("{}: is not a whole number from {} to {}; send one", name, low, high));

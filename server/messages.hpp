@@ -9,16 +9,16 @@
 
 #include "server/scene_reader.hpp"
 
-/// Messages of clients as values (docs/SERVER.md). The texts are not trusted.
+/// Conversion of messages of clients to values (docs/SERVER.md). The texts are not trusted.
 namespace tessera::server {
 
-/// A client's whole state; a later one with a larger number replaces it.
+/// A client's whole state. A state with a larger number replaces it.
 struct StateMessage {
   std::uint64_t number = 0;
   bool moving = false;
   Json state;
 };
-/// A frame has been painted.
+/// The client has painted a frame.
 struct AckMessage {
   std::uint64_t frame = 0;
 };
@@ -26,17 +26,18 @@ struct AckMessage {
 struct PauseMessage {};
 using Message = std::variant<StateMessage, AckMessage, PauseMessage>;
 
-/// Throws Error(bad_input) in one sentence: not JSON, an unknown type, a missing member or one of the wrong type.
+/// Parses a message. Throws Error(bad_input), with a message of one sentence, if the text is not JSON, the message's
+/// type is unknown, or a member is missing or has the wrong type.
 Message parse_message(std::string_view text);
 
-/// The JSON object of a request's body. Throws as parse_message().
+/// Parses the JSON object in a request's body. Throws the same errors as parse_message().
 Json parse_body(std::string_view text);
 
-/// An integer from a body, `otherwise` if it is missing. Throws as parse_message().
+/// Returns an integer from a body, or `otherwise` if it is missing. Throws the same errors as parse_message().
 std::int64_t whole_number(const Json& body, const char* name, std::int64_t otherwise, std::int64_t low,
                           std::int64_t high);
 
-/// The object `state` of a body. Throws as parse_message().
+/// Returns the object `state` of a body. Throws the same errors as parse_message().
 const Json& state_of(const Json& body);
 
 }  // namespace tessera::server

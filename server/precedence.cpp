@@ -15,7 +15,7 @@ void Precedence::begin_short(Clock::time_point now) {
 void Precedence::end_short(Clock::time_point now) {
   {
     const std::lock_guard lock(mutex_);
-    if (!held_) return;  // this interval counts as long work
+    if (!held_) return;  // this interval is counted as long work
     credit_ -= now - since_;
     since_ = now;
     held_ = false;

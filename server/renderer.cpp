@@ -60,10 +60,10 @@ class FrameProgress final : public Sink {
   Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
 };
 
-/// A request until it is answered.
+/// The work for a request until the request is answered.
 class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> {
  public:
-  /// `long_queue`: for long work; null: on the same queue.
+  /// `long_queue` is the queue for long work; if it is null, long work remains on the same queue.
   ApiTask(Request request, const std::stop_token& gone, Service::Reply reply, const ApiContext& context,
           WorkQueue* long_queue)
       : work_(make_api_work(std::move(request), context, stop_.get_token())),
@@ -76,7 +76,7 @@ class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> 
     ApiResult result = work_->turn();
     if (result.response) return answer(*result.response);
     if (result.is_long && long_queue_ != nullptr) {
-      std::exchange(long_queue_, nullptr)->add(shared_from_this());  // it may have its turn at once
+      std::exchange(long_queue_, nullptr)->add(shared_from_this());  // the task may have its turn at once
       return Turn::done;
     }
     return result.waits_for_data ? Turn::waits_for_data : Turn::again;
@@ -99,7 +99,7 @@ class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> 
   std::stop_callback<std::function<void()>> on_gone_;
 };
 
-/// Does long work on its own thread until the queue ends.
+/// A thread that does long work until the queue ends.
 class LongThread {
  public:
   explicit LongThread(WorkQueue& queue)
@@ -122,7 +122,7 @@ class LongThread {
 
  private:
   WorkQueue& queue_;
-  // Workers that wait in Precedence::pass() do no other work, so there are as many additional ones for views.
+  // Workers that wait in Precedence::pass() do nothing else, so the same number of additional workers exists for views.
   tbb::global_control more_workers_;
   std::thread thread_;
 };
@@ -160,7 +160,7 @@ void Renderer::report_reading(const Reading& reading) {
 void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
   const ApiContext context{reader_, stage_, settings_.threads, film_, picture_, precedence_};
   if (auto response = answer_at_once(request, context)) return reply(std::move(*response));
-  // The other ranks follow one thread of the first rank.
+  // The other ranks follow a single thread of the first rank.
   WorkQueue* const long_queue = stage_.ranks() == 1 ? &long_queue_ : nullptr;
   queue_.add(std::make_shared<ApiTask>(std::move(request), gone, std::move(reply), context, long_queue));
 }
@@ -193,7 +193,7 @@ void Renderer::read_first() {
   try {
     const Json base = reader_.base();
     stage_.data(base, reader_.scene(base));
-  } catch (const Error&) {  // reported to the first client that asks for the data
+  } catch (const Error&) {  // the error is reported to the first client that requests the data
     first_arrived_ = true;
   }
 }
@@ -232,7 +232,7 @@ FrameOutcome Renderer::render(const FrameOrder& order) {
     return make_frame(order);
   } catch (...) {
     const Error error = error_of(std::current_exception());
-    if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // errors of the run
+    if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // these errors end the run
     order.channel->send_text(
         text_of({{"type", "error"}, {"number", order.number}, {"error", reader_.worded(error.what())}}));
   }
@@ -265,7 +265,7 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   }
   const auto rendered_at = Clock::now();
   const PictureFormat format = order.level == Level::moving ? PictureFormat::jpeg : PictureFormat::png;
-  // A smaller image is enlarged by the page, and so would be its annotation: text has a minimum size.
+  // The page enlarges smaller images and would also enlarge the annotation, whose text has a minimum size.
   const SharedBytes bytes = order.level == Level::moving ? bare_picture(rendered.image, format, *scene)
                                                          : finished_picture(std::move(rendered.image), format, *scene,
                                                                             view, held->data, loaded.function);

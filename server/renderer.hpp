@@ -15,23 +15,24 @@
 
 namespace tessera::server {
 
-/// Settings for answering a server's requests, other than its data.
+/// Settings for answering the requests of a server, except for its data.
 struct RendererSettings {
   double latency_ms = 100;
-  std::uint64_t memory_bytes = 4ull << 30;  ///< for the data sets that are kept
+  std::uint64_t memory_bytes = 4ull << 30;  ///< limit for the data sets that are kept
   int threads = 0;
 };
 
-/// Renders for all clients of a server, on the thread that calls run(). With one rank, images, films and other long
-/// work are done on a second thread, so that views can be rendered at any time.
+/// Renders for all clients of a server, on the thread that calls run(). In a job of one rank, images, films and other
+/// long work are done on a second thread, so that views can be rendered at any time.
 class Renderer final : public Service {
  public:
   Renderer(SceneReader& reader, Job& job, const RendererSettings& settings);
   ~Renderer() override;
 
-  /// Runs until end() is called and, on several ranks, all have ended. Throws errors that end the run of all ranks.
+  /// Runs until end() is called and, in a job of several ranks, all ranks have ended. Throws errors that end the run of
+  /// all ranks.
   void run();
-  /// May be called from any thread: run() returns soon.
+  /// Makes run() return soon. May be called from any thread.
   void end();
   /// Sends the reason why the server ends to the clients.
   void announce_end(const std::string& reason);
@@ -45,7 +46,7 @@ class Renderer final : public Service {
  private:
   FrameOutcome render(const FrameOrder& order);
   FrameOutcome make_frame(const FrameOrder& order);
-  /// Reads the data that the server was started with.
+  /// Reads the data with which the server was started.
   void read_first();
   void report_reading(const Reading& reading);
   void data_arrived();

@@ -21,9 +21,10 @@ namespace tessera::server {
 
 using Json = nlohmann::json;
 
-/// The image described by a state. Immutable; statements about data refer to the data that it opened, or equal data.
+/// The image described by a state. Immutable. The data that are passed to member functions are those that this scene
+/// opened, or equal data.
 ///
-/// Keys   equal keys mean equal values, so that a data set, a transfer function and a session are made once for all
+/// Keys   Equal keys mean equal values, so that a data set, a transfer function or a session is made only once for all
 ///        states that differ in other respects.
 class Scene {
  public:
@@ -32,25 +33,26 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Keys of the data: data stored under any of them are suitable.
+  /// Keys of the data. Data stored under any of these keys are suitable.
   [[nodiscard]] virtual const std::vector<std::string>& data_keys() const = 0;
-  /// The keys under which other scenes would open the same as `data`, which this scene opened; its own key first.
+  /// Keys of scenes that would open the same data as `data`, which this scene opened. The scene's own key is first.
   [[nodiscard]] virtual std::vector<std::string> keys_of(const Dataset& data) const = 0;
-  /// Key of its transfer function for given data.
+  /// Key of the scene's transfer function for given data.
   [[nodiscard]] virtual const std::string& look_key() const = 0;
-  /// Key of its settings, without the effect of the function on them.
+  /// Key of the scene's settings, without the effect of the transfer function on them.
   [[nodiscard]] virtual const std::string& settings_key() const = 0;
 
   /// The field in the form of `--field`.
   [[nodiscard]] virtual std::string field_word(const Dataset& data) const = 0;
 
-  /// Reads the data, with all ranks. Throws Error.
+  /// Reads the data on all ranks. Throws Error.
   [[nodiscard]] virtual Dataset open(const Communicator& communicator, const ReadProgressFunction& progress) const = 0;
   [[nodiscard]] virtual LoadedTransferFunction function(const Dataset& data) const = 0;
-  /// Called once for equal keys, as it may read surfaces from the data's files. Throws Error.
+  /// Returns the settings. Called only once for equal keys, because the function may read surfaces from the data's
+  /// files. Throws Error.
   [[nodiscard]] virtual Settings settings(const Dataset& data, const LoadedTransferFunction& function) const = 0;
   [[nodiscard]] virtual View view(const Dataset& data) const = 0;
-  /// How the image is written to a file.
+  /// Options for writing the image to a file.
   [[nodiscard]] virtual ImageFileOptions image_options() const = 0;
   /// Whether explain() draws anything.
   [[nodiscard]] virtual bool explains() const = 0;
@@ -67,21 +69,22 @@ class SceneReader {
   SceneReader(const SceneReader&) = delete;
   SceneReader& operator=(const SceneReader&) = delete;
 
-  /// Throws Error(bad_input) for an unknown key, a value of the wrong type, or words that `render` refuses.
+  /// Reads a state. Throws Error(bad_input) for an unknown key, a value of the wrong type, and words for which `render`
+  /// reports an error.
   virtual std::shared_ptr<const Scene> scene(const Json& state) = 0;
-  /// A library's message with the names of options.
+  /// Returns a library's message with the names of options instead of settings.
   [[nodiscard]] virtual std::string worded(const std::string& message) const = 0;
-  /// The command line that renders a state's image. Throws as scene().
+  /// Returns the command line that renders a state's image. Throws the same errors as scene().
   virtual std::string command(const Json& state) = 0;
   /// The options with which the server was started, as a state. May be called from any thread.
   [[nodiscard]] virtual Json base() const = 0;
-  /// Whether the server was started with an option, which then applies to states without it.
+  /// Whether the server was started with this option, which then applies to states that do not have it.
   [[nodiscard]] virtual bool fixes(const std::string& option) const = 0;
   /// The name of the served file, for display.
   [[nodiscard]] virtual std::string input_name() const = 0;
-  /// Times of the steps, if there are several with times.
+  /// The times of the steps, if there are several steps with times.
   [[nodiscard]] virtual std::vector<double> times() const = 0;
-  /// The same state with the exact integrator.
+  /// Returns the state with the exact integrator.
   [[nodiscard]] virtual Json exact(const Json& state) const = 0;
 };
 

@@ -20,14 +20,15 @@ struct ServeOptions {
 
 /// Callbacks of the server.
 struct ServeEvents {
-  /// The address for a browser, with the token; called on the first rank.
+  /// Called on the first rank with the address for a browser, which contains the token.
   std::function<void(const std::string& url)> listening;
-  /// Called when the server ended during work that cannot be stopped, for example reading a file: exit the process, or
-  /// return to wait for the work. Called from any thread.
+  /// Called, from any thread, when the server ended during work that cannot be stopped, for example reading a file. The
+  /// callback may exit the process, or return to wait for the work.
   std::function<void()> ended_at_work;
-  /// Called for a second signal: exit the process at once. On any rank, from any thread.
+  /// Called for a second signal, on any rank, from any thread. The callback must exit the process at once.
   std::function<void(int signal)> hurried;
-  /// Called when one of several ranks has been lost: report it and exit the process. On any rank, from any thread.
+  /// Called when one of several ranks has been lost, on any rank, from any thread. The callback must report this and
+  /// exit the process.
   std::function<void()> rank_lost;
 };
 

@@ -25,13 +25,13 @@ struct Response {
   int status = 200;
   std::string type = "application/json";
   SharedBytes body;
-  std::string file_name{};  ///< for saving; empty: the response is displayed
+  std::string file_name{};  ///< name for saving the response; empty: the browser displays it
 };
 
-/// `{"error": sentence}`
+/// Makes a response whose body is `{"error": sentence}`.
 Response error_response(int status, const std::string& sentence);
 
-/// Sends to one client. May be called from any thread; does nothing after the client has left.
+/// Sends messages to one client. May be called from any thread. Does nothing after the client has disconnected.
 class Channel {
  public:
   virtual ~Channel() = default;
@@ -48,7 +48,7 @@ class Channel {
 
 using ClientId = std::uint64_t;
 
-/// Answers requests. The network calls it from one thread, so every call except message() must be fast.
+/// Answers requests. The network calls all functions except message() from one thread, so they must be fast.
 class Service {
  public:
   using Reply = std::function<void(Response)>;
@@ -58,11 +58,13 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// `reply` may be called from any thread, once. `gone` requests a stop when the client no longer waits.
+  /// Answers a request by calling `reply` once, from any thread. `gone` requests a stop when the client no longer
+  /// waits.
   virtual void answer(Request request, std::stop_token gone, Reply reply) = 0;
 
   virtual ClientId join(std::shared_ptr<Channel> channel) = 0;
-  /// A text message of a client, as received. Called on another thread; a client's messages come one after the other.
+  /// Receives a text message of a client. Called on another thread than the other functions, one after the other for
+  /// the messages of a client.
   virtual void message(ClientId client, const std::string& text) = 0;
   virtual void leave(ClientId client) = 0;
 };

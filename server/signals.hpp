@@ -6,8 +6,9 @@
 
 namespace tessera::server {
 
-/// While it exists, the first SIGINT, SIGTERM or SIGHUP of this process calls `first`, any further one `again` with its
-/// number, on its own thread. A SIGHUP that the caller ignores (nohup) stays ignored.
+/// While an object of this class exists, the first SIGINT, SIGTERM or SIGHUP of this process calls `first`, and any
+/// further signal calls `again` with its number, both on a separate thread. If the caller ignores SIGHUP (nohup), it
+/// remains ignored.
 class Signals {
  public:
   Signals(std::function<void()> first, std::function<void(int signal)> again);

@@ -19,7 +19,8 @@ constexpr std::size_t most_data_sets = 8, most_sessions = 3, most_functions = 16
 std::uint64_t bytes_of(const Dataset& data) {
   if (data.is_grid()) {
     const GridIndex samples = data.grid_geometry().samples();
-    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // at most: mapped files take none
+    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // an upper bound, since mapped files
+                                                                                  // need no memory
   }
   const MeshArrays arrays = data.mesh_arrays();
   return 8 * std::uint64_t{arrays.points.size() + arrays.scalars.size()} + 20 * data.tet_count();
@@ -36,7 +37,7 @@ const char* stage_words(ReadProgress::Stage stage) {
   }
 }
 
-/// Frames of a separate session.
+/// Renders frames in a separate session.
 class OwnFrames final : public SceneFrames {
  public:
   OwnFrames(std::shared_ptr<HeldData> held, Settings settings, LoadedTransferFunction function)
@@ -56,14 +57,14 @@ class OwnFrames final : public SceneFrames {
   std::optional<Session> session_;
 };
 
-/// Frames of the stage, with the other ranks.
+/// Renders frames by the stage, together with the other ranks.
 class StageFrames final : public SceneFrames {
  public:
   StageFrames(Stage& stage, Json state, std::shared_ptr<const Scene> scene, LoadedTransferFunction function)
       : SceneFrames(std::move(function)), stage_(stage), state_(std::move(state)), scene_(std::move(scene)) {}
   RenderedFrame render(const View& view, const FrameSettings& settings, Sink* sink,
                        const std::stop_token& stop) override {
-    held_ = stage_.data(state_, scene_);  // the other ranks may have dropped it since the last frame
+    held_ = stage_.data(state_, scene_);  // the other ranks may have dropped the data since the last frame
     return stage_.render(state_, *scene_, *held_, view, settings, sink, stop);
   }
   Session& session() override { return stage_.session(state_, *scene_, *held_); }
@@ -103,7 +104,7 @@ void Stage::keep(const Scene& scene, Dataset data) {
   entry.held = std::make_shared<HeldData>(std::move(data));
   entry.held->bytes = bytes;
   entries_.push_front(std::move(entry));
-  if (job_.rank() != 0) return;  // the first rank decides what is dropped
+  if (job_.rank() != 0) return;  // the first rank decides which data are dropped
   std::uint64_t sum = 0;
   std::size_t count = 0;
   for (auto at = entries_.begin(); at != entries_.end();) {
@@ -143,7 +144,7 @@ std::shared_ptr<HeldData> Stage::data(const Json& state, const std::shared_ptr<c
   if (auto held = find(*scene)) return held;
   if (const auto failed = failed_.find(scene->data_keys().front()); failed != failed_.end()) {
     const Error error = failed->second;
-    failed_.erase(failed);  // the file may be correct when it is requested again
+    failed_.erase(failed);  // the file may have been corrected when it is requested again
     throw error;
   }
   if (ranks() > 1) {
@@ -235,7 +236,7 @@ RenderedFrame Stage::render_preview(const Scene& scene, HeldData& held, const Vi
     settings.surfaces.triangles.clear();
     settings.integrator = {};
     settings.integrator.accuracy = 1e-2;
-    // Sampling takes a third of the time, but supports neither surfaces nor light.
+    // Sampling takes a third of the time, but does not support surfaces and shading.
     if (settings.surfaces.iso.empty() && !settings.grid.shading && !settings.mesh.shading) {
       settings.integrator.kind = IntegratorKind::sampled;
       settings.grid.step = 2;
@@ -252,13 +253,13 @@ RenderedFrame Stage::render_preview(const Scene& scene, HeldData& held, const Vi
 void Stage::make_preview_together(const Json& state, HeldData& held) {
   held.preview_tried = true;
   const bool is_first = job_.rank() == 0;
-  if (held.data.is_grid() && !is_first) return;  // for a grid every rank has all samples
+  if (held.data.is_grid() && !is_first) return;  // every rank has all samples of a grid
   send_order({{"do", "preview"}, {"state", state}});
   try {
     std::optional<Dataset> made = coarse_preview(held.data, {}, {}, job_.communicator());
     if (is_first) held.preview = std::move(made);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;  // otherwise there is no preview
+    if (error.code() != ErrorCode::bad_input) throw;  // for other errors there is no preview
   }
 }
 
@@ -280,12 +281,12 @@ bool Stage::has_preview(const Json& state, const std::shared_ptr<HeldData>& held
     making_ = held.get();
   }
   held->preview_tried = true;
-  if (making_thread_.joinable()) making_thread_.join();  // the last thread, which has finished
+  if (making_thread_.joinable()) making_thread_.join();  // the previous thread, which has finished
   making_thread_ = std::thread([this, held, stop = stop_making_.get_token()] {
     std::optional<Dataset> data;
     try {
       data = coarse_preview(held->data, {}, stop);
-    } catch (...) {  // in that case there is no preview
+    } catch (...) {  // after an exception there is no preview
       data.reset();
     }
     const std::lock_guard lock(mutex_);
@@ -297,7 +298,7 @@ bool Stage::has_preview(const Json& state, const std::shared_ptr<HeldData>& held
 
 Settings Stage::session_settings(const Scene& scene, HeldData& held) {
   Settings settings = scene.settings(held.data, function(held, scene));
-  // A single process has one more session, for long work.
+  // A single process has one additional session, for long work.
   const std::size_t most = ranks() > 1 ? 1 : most_sessions + 1;
   if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
   return settings;
@@ -320,7 +321,7 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
     sessions_.splice(sessions_.begin(), sessions_, kept);
     return *sessions_.front().session;
   }
-  // Sessions of several ranks share the job's messages, so there is one at a time.
+  // Sessions of several ranks share the job's messages, so only one session exists at a time.
   const std::size_t most = ranks() > 1 ? 1 : most_sessions;
   while (sessions_.size() >= most) sessions_.pop_back();
   auto trace = std::make_unique<Trace>();
@@ -337,7 +338,7 @@ std::map<std::string, double> Stage::stage_times(double frame_ms) {
 
 void Stage::check_size(ImageSize size) const {
   constexpr int longest_side = 16384;
-  constexpr std::uint64_t bytes_of_pixel = 24;  // rendered and encoded
+  constexpr std::uint64_t bytes_of_pixel = 24;  // bytes for a rendered and encoded pixel
   if (size.width > longest_side || size.height > longest_side)
     throw bad_input(
         fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller image, or render it "
@@ -362,10 +363,11 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
                 {"uncertainty", settings.keep_uncertainty}});
   try {
     Session& used = session(state, scene, held);
-    static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times were not requested
+    static_cast<void>(sessions_.front().trace->take_spans());  // removes the spans of frames whose times were not
+                                                               // requested
     return used.render(view, function(held, scene).function, settings, sink, stop);
   } catch (...) {
-    if (ranks() > 1) sessions_.clear();  // they may be unusable
+    if (ranks() > 1) sessions_.clear();  // sessions may be unusable after an error
     throw;
   }
 }
@@ -428,7 +430,8 @@ void Stage::follow() {
     try {
       execute(order);
     } catch (const Error& error) {
-      // All ranks get the same errors when opening data, and for bad input: the first rank reports them to its client.
+      // All ranks receive the same errors if data cannot be opened or the input is wrong. The first rank reports these
+      // errors to its client.
       if (error.code() != ErrorCode::bad_input && order.at("do") != "open") throw;
     }
   }

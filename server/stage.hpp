@@ -21,19 +21,19 @@
 
 namespace tessera::server {
 
-/// An open data set, and what was made from it.
+/// An open data set, and the objects that were made from it.
 struct HeldData {
   explicit HeldData(Dataset data_) : data(std::move(data_)) {}
   Dataset data;
   std::uint64_t bytes = 0;                                  ///< approximate size in memory
-  std::map<std::string, LoadedTransferFunction> functions;  ///< by Scene::look_key(), a few
+  std::map<std::string, LoadedTransferFunction> functions;  ///< a few functions, by Scene::look_key()
   std::optional<Dataset> preview;                           ///< tessera/coarse_preview.hpp
   bool preview_tried = false;
   std::unique_ptr<Session> preview_session;
   std::string preview_key;
 };
 
-/// Frames of one scene, for long work.
+/// Renders frames of one scene for long work.
 class SceneFrames {
  public:
   explicit SceneFrames(LoadedTransferFunction function) : function_(std::move(function)) {}
@@ -57,64 +57,66 @@ struct Reading {
   std::optional<double> fraction;
 };
 
-/// Data sets and sessions of a server, made on demand; the last few are kept, within a memory budget. Used by the
-/// rendering thread only; a single process reads data on a separate thread.
+/// Data sets and sessions of a server. They are made on demand, and the last few are kept within a memory budget. Only
+/// the rendering thread uses this object. A single process reads data on a separate thread.
 ///
-/// On several ranks rank 0 calls it and the others follow(): rank 0 first broadcasts every step that needs all of them.
+/// On several ranks, rank 0 calls the functions, and the others run follow(). Rank 0 first broadcasts every step that
+/// requires all ranks.
 class Stage {
  public:
-  /// `came`: reading has ended, successfully or not; called from any thread.
+  /// `came` is called, from any thread, when reading has ended, successfully or not.
   Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::function<void()> came,
         std::function<void(const Reading&)> progress);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  /// The scene's data. Null: these or other data are being read; ask again when that has ended. Throws the error of
-  /// reading them.
+  /// Returns the scene's data. Returns null while these or other data are being read; the caller must call again when
+  /// reading has ended. Throws the error with which the data could not be read.
   std::shared_ptr<HeldData> data(const Json& state, const std::shared_ptr<const Scene>& scene);
   const LoadedTransferFunction& function(HeldData& held, const Scene& scene);
 
-  /// An image of the scene, whose size may differ from the scene's. Collective.
+  /// Renders an image of the scene, possibly in another size than the scene's. Collective.
   RenderedFrame render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                        const FrameSettings& settings, Sink* sink, const std::stop_token& stop);
-  /// Frames for long work. A single process renders them in a separate session, on the calling thread, in parallel with
-  /// the stage; on several ranks they are rendered by the stage, on its thread. Throws Error(bad_input) for a size that
-  /// needs too much memory.
+  /// Makes an object that renders frames for long work. A single process renders them in a separate session, on the
+  /// calling thread, in parallel with the stage. On several ranks, the stage renders them on its thread. Throws
+  /// Error(bad_input) for a size that needs too much memory.
   std::unique_ptr<SceneFrames> frames(const Json& state, const std::shared_ptr<const Scene>& scene,
                                       const std::shared_ptr<HeldData>& held, ImageSize size);
-  /// The times of that frame's stages: their shares of its time. On several ranks those of this one.
+  /// The times of the last frame's stages, as shares of the frame's time. On several ranks, the shares are those of
+  /// this rank.
   std::map<std::string, double> stage_times(double frame_ms);
-  /// Whether there is a preview (tessera/coarse_preview.hpp) of the scene's data. The first call starts making it; on
-  /// several ranks all make it before the call returns.
+  /// Whether there is a preview (tessera/coarse_preview.hpp) of the scene's data. The first call starts to make the
+  /// preview. On several ranks, all ranks make it before the call returns.
   bool has_preview(const Json& state, const std::shared_ptr<HeldData>& held);
-  /// An image of the preview, without surfaces of meshes, rendered by this process alone.
+  /// Renders an image of the preview, without surfaces of meshes, on this process alone.
   RenderedFrame render_preview(const Scene& scene, HeldData& held, const View& view, Sink* sink,
                                const std::stop_token& stop);
   /// The session of the scene's last image.
   Session& session(const Json& state, const Scene& scene, HeldData& held);
 
-  /// As tessera::probe(), with all ranks.
+  /// Calls tessera::probe() on all ranks.
   RayProbe probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
                  std::size_t samples);
 
-  /// The reading in progress.
+  /// The progress of reading, if data are being read.
   [[nodiscard]] std::optional<Reading> reading();
 
   [[nodiscard]] int ranks() const { return job_.size(); }
   /// Ends follow() on the other ranks.
   void end();
-  /// Runs on all ranks except the first. Returns at the end.
+  /// Runs on all ranks except the first. Returns after end().
   void follow();
 
  private:
   struct Entry {
-    std::vector<std::string> keys;  ///< the first one belongs to the scene that opened it
+    std::vector<std::string> keys;  ///< keys of the data; the first is that of the scene that opened them
     std::shared_ptr<HeldData> held;
   };
   struct KeptSession {
     std::string key;
-    std::unique_ptr<Trace> trace;  // outlives the session
+    std::unique_ptr<Trace> trace;  // must outlive the session
     std::unique_ptr<Session> session;
   };
   struct Made {
@@ -143,7 +145,7 @@ class Stage {
   std::function<void()> came_;
   std::function<void(const Reading&)> progress_;
   std::list<Entry> entries_;         ///< most recently used first
-  std::list<KeptSession> sessions_;  ///< likewise
+  std::list<KeptSession> sessions_;  ///< most recently used first
 
   std::mutex mutex_;  ///< guards the members below
   std::thread reading_thread_;
@@ -158,7 +160,7 @@ class Stage {
   std::optional<Made> made_;
   std::thread making_thread_;
   std::stop_source stop_making_;
-  std::map<std::string, Error> failed_;  ///< errors of data that could not be read, until reported
+  std::map<std::string, Error> failed_;  ///< errors of data that could not be read, kept until they are reported
 };
 
 }  // namespace tessera::server

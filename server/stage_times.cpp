@@ -8,7 +8,7 @@ namespace tessera::server {
 
 std::map<std::string, double> stage_times(std::vector<TraceSpan> spans, double frame_ms) {
   std::erase_if(spans, [](const TraceSpan& span) { return std::string_view(span.stage) == "frame"; });
-  // Outer spans before those inside them.
+  // Outer spans precede the spans inside them.
   std::ranges::sort(spans, [](const TraceSpan& a, const TraceSpan& b) {
     if (a.thread != b.thread) return a.thread < b.thread;
     if (a.start_us != b.start_us) return a.start_us < b.start_us;

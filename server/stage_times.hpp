@@ -11,7 +11,7 @@
 namespace tessera::server {
 
 /// Divides the milliseconds of a frame among its stages, by the time that threads spent in each, excluding nested
-/// stages. The results sum to `frame_ms`, if there are any.
+/// stages. If there are any results, their sum is `frame_ms`.
 std::map<std::string, double> stage_times(std::vector<TraceSpan> spans, double frame_ms);
 
 }  // namespace tessera::server

@@ -16,7 +16,8 @@ std::shared_ptr<boost::asio::ssl::context> tls_context(const std::filesystem::pa
   auto tls = std::make_shared<context>(context::tls_server);
   tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 | context::no_tlsv1 |
                    context::no_tlsv1_1);
-  // For TLS 1.2 only ciphers with forward secrecy and authenticated encryption; all of TLS 1.3 have both.
+  // For TLS 1.2, only ciphers with forward secrecy and authenticated encryption are allowed. All ciphers of TLS 1.3
+  // have both.
   if (::SSL_CTX_set_cipher_list(tls->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20:!PSK") != 1)
     throw Error(ErrorCode::system_failure, "--tls-certificate", "this OpenSSL has no safe ciphers",
                 "use another OpenSSL, or an SSH tunnel");

@@ -11,10 +11,10 @@ struct WebFile {
   std::string_view name, type, text;
 };
 
-/// Null for an unknown name. The page itself is "index.html".
+/// Returns the file of this name; null for an unknown name. The page itself is "index.html".
 const WebFile* web_file(std::string_view name);
 
-/// A page with one sentence.
+/// Returns a page that contains one sentence.
 std::string sentence_page(std::string_view sentence);
 
 }  // namespace tessera::server

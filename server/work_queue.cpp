@@ -11,7 +11,7 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Most tasks that may wait for their turn or for data; further ones are abandoned on arrival.
+/// Largest number of tasks that may wait for their turn or for data. Further tasks are abandoned on arrival.
 constexpr std::size_t most_tasks = 256;
 
 }  // namespace
@@ -156,7 +156,7 @@ void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
   } else if (outcome.kind == Kind::failed) {
     c.failed = order.number;
   } else if (outcome.kind == Kind::waits_for_data) {
-    // A state that has arrived since then may need other data.
+    // A state that has arrived since the turn began may need other data.
     c.waits = c.state && c.state->number == order.number && wakes_ == wakes_before_turn_;
   } else if (order.level == Level::moving) {
     c.levels.took(order.shrink, order.preview, 1.5 * ms_since(c.working_since));

@@ -31,10 +31,10 @@ struct FrameOrder {
   Json state;
   std::uint64_t number = 0;
   Level level = Level::moving;
-  std::size_t shrink = 0;   ///< moving: index into `shrinks`
-  bool preview = false;     ///< moving: shows the preview, as the data take too long
+  std::size_t shrink = 0;   ///< while moving: index into `shrinks`
+  bool preview = false;     ///< while moving: whether the frame shows the preview, because the data take too long
   Clock::time_point event;  ///< when the state arrived
-  std::stop_source stop;    ///< requests a stop when the client has another state
+  std::stop_source stop;    ///< a stop is requested when the client has another state
 };
 
 /// Work for a request, done in turns.
@@ -46,9 +46,9 @@ class Task {
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
   virtual Turn turn() = 0;
-  /// No turn follows: the server ends.
+  /// Called if no further turn follows because the server ends.
   virtual void abandon() = 0;
-  /// Ends the current turn soon; may be called from any thread.
+  /// Makes the current turn end soon. May be called from any thread.
   virtual void stop() {}
 };
 
@@ -56,14 +56,14 @@ class Task {
 struct FrameOutcome {
   enum class Kind { sent, stopped, failed, waits_for_data };
   Kind kind = Kind::failed;
-  Level level = Level::moving;  ///< sent: the actual level, which may be more exact than requested
+  Level level = Level::moving;  ///< for a frame that was sent: its actual level, which may be more exact than requested
   double render_ms = 0;
 };
 
-/// Schedules the work: clients and tasks take turns, so that no client waits for another's second frame. Only the
-/// latest state of a client counts. A frame of an older state is stopped at once if that state was at rest; a frame of
-/// a moving state may finish, as a client that keeps moving would otherwise see none, unless it takes more than twice
-/// its budget.
+/// Schedules the work: clients and tasks take turns, so that no client waits for the second frame of another client.
+/// Only the latest state of a client is used. A frame of an older state is stopped at once if that state was at rest. A
+/// frame of a moving state may finish unless it takes more than twice its budget, because a client that keeps moving
+/// would otherwise receive no frames.
 ///
 /// One thread does the work: only it calls next(), finish() and overdue(). All other functions may be called from any
 /// thread.
@@ -79,23 +79,23 @@ class WorkQueue {
   void add(std::shared_ptr<Task> task);
 
   using Work = std::variant<FrameOrder, std::shared_ptr<Task>>;
-  /// Waits for work. None once the queue has ended.
+  /// Waits for work. Returns none after the queue has ended.
   std::optional<Work> next();
-  /// Call before a frame is sent, as the client may acknowledge it at once.
+  /// Must be called before a frame is sent, since the client may acknowledge the frame at once.
   void begin_sending(const FrameOrder& order, std::uint64_t frame);
   void finish(const FrameOrder& order, const FrameOutcome& outcome);
   void finish(std::shared_ptr<Task> task, Task::Turn turn);
   /// Whether a moving frame has taken so long that a newer state should not wait for it.
   bool overdue(const FrameOrder& order);
 
-  /// Data have arrived, or could not be read: clients and tasks that waited for them try again.
+  /// Called when data have arrived or could not be read. Clients and tasks that waited for data try again.
   void wake();
   void send(ClientId client, const std::string& text);
-  /// Sends to all clients.
+  /// Sends a text to all clients.
   void send_to_all(const std::string& text);
-  /// Sends to clients that wait for data.
+  /// Sends a text to the clients that wait for data.
   void send_to_waiting(const std::string& text);
-  /// After this call next() returns none; current work is asked to stop, and tasks are abandoned.
+  /// Ends the queue: next() returns none, a stop of current work is requested, and tasks are abandoned.
   void end();
   [[nodiscard]] bool ended();
 
@@ -131,7 +131,7 @@ class WorkQueue {
   std::map<ClientId, Client> clients_;
   ClientId last_client_ = 0, served_ = 0;
   std::deque<std::shared_ptr<Task>> tasks_, waiting_;
-  std::shared_ptr<Task> working_;                    ///< the task that has its turn
+  std::shared_ptr<Task> working_;                    ///< the task whose turn it is
   std::uint64_t wakes_ = 0, wakes_before_turn_ = 0;  ///< data may arrive while a task is about to wait for them
   bool tasks_turn_ = false, ended_ = false;
 };
