@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-/// A name in the target's directory that does not depend on the target's name, which may already have the maximum
-/// length.
+/// Returns a name in the target's directory. It does not depend on the target's name, which may already have the
+/// maximum length.
 fs::path part_name(const fs::path& target, unsigned number) {
   return folder_of(target) / fmt::format(".tessera-{}-{}.part", ::getpid(), number);
 }
@@ -57,7 +57,7 @@ Error OutputFault::since_changed() const {
 
 void check_writable(const fs::path& target) {
   try {
-    const AtomicFile probe(target);  // never committed: leaves nothing behind
+    const AtomicFile probe(target);  // is never committed, so no file remains
   } catch (const OutputFault& fault) {
     throw Error(fault);
   }
@@ -76,7 +76,8 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     fail(errno, "cannot be written");
   }
   descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure will occur again.
+  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure will occur again in
+  // open_named(), which reports it.
   if (descriptor_ < 0) open_named();
   begun_ = true;
 }
@@ -130,17 +131,18 @@ fs::path AtomicFile::named_part() {
 }
 
 void AtomicFile::commit() {
-  // A private file stays private; file systems without permissions have none to keep.
+  // The permissions of a replaced file are kept, so that a private file remains private. Errors are ignored, since some
+  // file systems have no permissions.
   struct stat present {};
   if (::stat(target_.c_str(), &present) == 0 && S_ISREG(present.st_mode))
     static_cast<void>(::fchmod(descriptor_, present.st_mode & 0777));
-  // Without fsync, a machine that crashes after the rename may keep the name and lose the bytes. EINVAL: the file
-  // system does not support it.
+  // Without fsync, the file may have its name but lack its bytes if the machine crashes after the rename. EINVAL means
+  // that the file system does not support fsync.
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno, "cannot be written");
   const auto lock = system::naming_outputs();
   if (part_.empty()) {
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
-    // A new file gets its name at once, so that a process killed here leaves nothing behind.
+    // A new file gets its final name in one step, so that no other file remains if the process is killed here.
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
       ::close(descriptor_);
       descriptor_ = -1;
@@ -158,7 +160,9 @@ void AtomicFile::commit() {
   }
   const int closed = ::close(descriptor_);
   descriptor_ = -1;
-  if (closed != 0) fail(errno, "cannot be written");  // network file systems report a full disk only here
+  if (closed != 0)
+    fail(errno, "cannot be written");  // some network file systems report a full disk only when the file
+                                       // is closed
   if (::rename(part_.c_str(), target_.c_str()) != 0) fail(errno, "cannot be renamed to");
   system::remove_unfinished(part_);
   part_.clear();
@@ -203,7 +207,7 @@ void write_text(const fs::path& target, std::string_view text) {
 }
 
 void check_not_input(const fs::path& target, const fs::path& input) {
-  std::error_code absent;  // either is missing: not the same file
+  std::error_code absent;  // if a file is missing, they are not the same file
   if (!input.empty() && fs::equivalent(target, input, absent))
     throw bad_input(
         fmt::format("{}: is an input of this run and would be overwritten; choose another name", target.string()));

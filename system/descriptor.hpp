@@ -22,7 +22,7 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// Writes all bytes; false if that fails.
+/// Writes all bytes. Returns false if this fails.
 bool write_all(int file, const void* bytes, std::size_t count);
 
 }  // namespace tessera::system

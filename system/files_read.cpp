@@ -36,7 +36,7 @@ void note_named(const std::filesystem::path& file) {
 }
 
 void note_read(const std::filesystem::path& file) {
-  if (file.native().starts_with("/proc/")) return;  // an open file of this process: it has no name of its own
+  if (file.native().starts_with("/proc/")) return;  // an open file of this process, which has no other name
   note_named(file);
   const std::lock_guard lock(files_read().mutex);
   files_read().names.insert(file.string());

@@ -9,10 +9,11 @@ namespace tessera::system {
 
 namespace {
 
-/// Bytes that the process's control group (a container or job) may still allocate. Cached files can be evicted.
+/// Bytes that the process's control group (a container or job) may still allocate, including memory for cached files,
+/// which can be freed.
 std::uint64_t left_in_group() {
   std::uint64_t most = 0, used = 0, cached = 0;
-  // "max" is not a number: there is no limit.
+  // The file contains "max", which is not a number, if there is no limit.
   if (!(std::ifstream("/sys/fs/cgroup/memory.max") >> most) ||
       !(std::ifstream("/sys/fs/cgroup/memory.current") >> used))
     return UINT64_MAX;

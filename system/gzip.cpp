@@ -14,7 +14,7 @@
 namespace tessera::system {
 namespace {
 
-constexpr int either_header = 15 + 32;  // zlib detects whether the header is gzip's or its own
+constexpr int either_header = 15 + 32;  // makes zlib detect whether the header is that of gzip or of zlib
 
 struct InflateState {
   z_stream z{};
@@ -27,7 +27,7 @@ struct InflateState {
 };
 
 void require_possible(std::uint64_t packed, std::uint64_t count, const std::string& source) {
-  constexpr std::uint64_t best = 1040;  // 1032, plus headers
+  constexpr std::uint64_t best = 1040;  // deflate's best ratio of 1032, with a margin for headers
   if (count / best > packed)
     throw scene::bad_input(
         fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
@@ -42,7 +42,8 @@ scene::Error ends_early(std::uint64_t made, std::uint64_t count, const std::stri
                   source, made, count));
 }
 
-/// Fills `out` as far as the stream goes; returns the number of bytes written. Supports consecutive gzip members.
+/// Inflates the stream into `out` until either ends. Returns the number of bytes written. Supports consecutive gzip
+/// members.
 std::size_t inflate_into(std::span<const std::byte> stream, std::span<std::byte> out) {
   constexpr std::size_t most = std::numeric_limits<uInt>::max();
   InflateState state;
@@ -104,7 +105,7 @@ void inflate_parts(const std::filesystem::path& file, const InflatedRange& range
     }
     const bool ended = result == Z_STREAM_END;
     if (ended && inflateReset(&z) != Z_OK) break;
-    // A stream that continues must not have bytes left; Z_BUF_ERROR means that no progress was possible.
+    // Inflating ends after the last member or after an error. Z_BUF_ERROR means that no progress was possible.
     if ((!ended && result != Z_OK) || (ended && z.avail_in == 0 && at == size)) break;
   }
   if (made < end) throw ends_early(made, end, source);
@@ -135,7 +136,7 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
       z.next_in = reinterpret_cast<Bytef*>(in.data());
       z.avail_in = static_cast<uInt>(now);
     }
-    // Members may follow each other; bytes after the last are padding, as in gzip itself.
+    // Several members may follow each other. Bytes after the last member are padding, as in the program gzip.
     if (ended && (z.avail_in == 0 || *z.next_in != 0x1f)) return written;
     z.next_out = reinterpret_cast<Bytef*>(out.data());
     z.avail_out = static_cast<uInt>(out.size());

@@ -13,7 +13,8 @@
 namespace tessera::system {
 namespace {
 
-/// According to proc(5), the state follows the name, which is in parentheses and may contain some.
+/// According to proc(5), the state follows the name of the program. The name is in parentheses and may itself contain
+/// parentheses.
 bool all_threads_sleep(pid_t process) {
   std::error_code unknown;
   std::filesystem::directory_iterator thread(fmt::format("/proc/{}/task", process), unknown);

@@ -8,13 +8,14 @@
 
 namespace tessera::system {
 
-/// Detects that a process waits for something that does not arrive: it uses no processor time, and all its threads
-/// sleep. A process that waits for a disk, is stopped, or waits for a processor has another state.
+/// Detects that a process waits for something that does not arrive: the process uses no processor time, and all its
+/// threads sleep. A process that waits for a disk or a processor, or is stopped, is in another state.
 class IdleWatch {
  public:
   explicit IdleWatch(pid_t process) : process_(process) {}
 
-  /// How long all calls have found it idle, with the same processor time. To be called often.
+  /// Returns the time for which all calls have found the process idle with the same processor time. Must be called
+  /// often.
   std::chrono::steady_clock::duration look();
 
  private:

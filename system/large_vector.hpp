@@ -16,7 +16,7 @@ void reserve_large(std::vector<T>& numbers, std::size_t count) {
   constexpr std::size_t page = 1 << 21;
   std::size_t room = numbers.capacity() * sizeof(T);
   void* first = numbers.data();
-  // If this fails, pages are small.
+  // If this fails, small pages are used.
   if (std::align(page, page, first, room) != nullptr)
     static_cast<void>(::madvise(first, room / page * page, MADV_HUGEPAGE));
 }

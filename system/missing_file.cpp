@@ -29,10 +29,10 @@ std::string meant_file(const std::filesystem::path& file) {
   std::filesystem::directory_iterator entry(folder, error);
   for (; !error && names.size() < most && entry != std::filesystem::directory_iterator(); entry.increment(error))
     names.push_back(entry->path().filename().string());
-  // The next piece or step of a series is not a likely alternative.
+  // Digits are ignored, because the next piece or step of a series was probably not meant.
   const std::string requested = without_digits(file.filename().string());
   std::erase_if(names, [&](const std::string& name) { return without_digits(name) == requested; });
-  std::ranges::sort(names);  // directory entries are unordered
+  std::ranges::sort(names);  // directory entries are in no order
   const auto near = nearest_name(file.filename().string(), names);
   if (!near) return {};
   return fmt::format("did you mean {}?",

@@ -8,11 +8,11 @@
 
 namespace tessera::system {
 
-/// The error for a missing file: it suggests the file of the same directory that was probably meant, among the first
-/// thousand entries.
+/// Returns the error for a missing file. It suggests the file that was probably meant, out of the first thousand
+/// entries of the same directory.
 scene::Error missing_file(const std::filesystem::path& file);
 
-/// "did you mean NAME?", or empty.
+/// Returns "did you mean NAME?", or an empty text.
 std::string meant_file(const std::filesystem::path& file);
 
 }  // namespace tessera::system

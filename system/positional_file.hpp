@@ -10,17 +10,19 @@
 
 namespace tessera::system {
 
-/// An open file that any number of threads read by position. The name is no longer needed after opening: a file that is
-/// removed can still be read to the end.
+/// An open file that any number of threads may read at given positions. The name is not needed after opening: a file
+/// that has been removed can still be read.
 class PositionalFile {
  public:
-  /// `name` for messages; empty: the file's. Throws like open_regular (system/regular_file.hpp).
+  /// `name` is the name in messages; if it is empty, that of the file is used. Throws the same errors as open_regular()
+  /// (system/regular_file.hpp).
   explicit PositionalFile(const std::filesystem::path& file, std::string name = {});
 
-  /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends earlier, or the disk fails.
+  /// Reads `count` bytes, beginning at byte `at`. Throws Error(system_failure) if the file ends earlier or the disk
+  /// fails.
   void read(std::uint64_t at, std::byte* to, std::uint64_t count) const;
 
-  /// Up to `count` bytes from the beginning; fewer if the file is shorter.
+  /// Returns the first `count` bytes, or fewer if the file is shorter.
   [[nodiscard]] std::string beginning(std::uint64_t count) const;
 
   [[nodiscard]] std::uint64_t size() const;

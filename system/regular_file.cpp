@@ -31,7 +31,8 @@ scene::Error cannot_open(const std::string& name, int error_number) {
           "it cannot be opened: " + std::generic_category().message(error_number), remedy};
 }
 
-/// Whether no file can have such a name: a name that is too long, or a circular link, counts as missing.
+/// Whether the error means that there is no such file. A name that is too long and a circular link are treated as
+/// missing files.
 bool leads_nowhere(int error_number) {
   return error_number == ENOENT || error_number == ENOTDIR || error_number == ENAMETOOLONG || error_number == ELOOP;
 }
@@ -40,8 +41,8 @@ bool leads_nowhere(int error_number) {
 
 Descriptor open_regular(const std::filesystem::path& file, const std::string& name) {
   struct stat facts {};
-  // Checked before opening, which may trigger an action of a device, and after, because the file may have been
-  // replaced. Does not wait for a pipe without a writer.
+  // The type is checked before opening, since opening a device may trigger an action, and again afterwards, because the
+  // file may have been replaced. Opening does not wait for a pipe without a writer.
   if (::stat(file.c_str(), &facts) == 0 && !S_ISREG(facts.st_mode)) throw not_regular(name);
   Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (!opened.is_open()) throw leads_nowhere(errno) ? missing_file(file) : cannot_open(name, errno);

@@ -17,10 +17,10 @@
 namespace tessera::system {
 namespace {
 
-/// An unnamed file; -1 with errno on failure.
+/// Opens a file without a name. Returns -1 and sets errno on failure.
 int nameless_file(const std::filesystem::path& folder) {
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure will occur again.
+  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure would occur again below.
   if (file >= 0) return file;
   std::string name = (folder / "tessera-XXXXXX").string();
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
@@ -28,9 +28,10 @@ int nameless_file(const std::filesystem::path& folder) {
   return named;
 }
 
-/// 0, or the errno if there is no space for `bytes` bytes, as far as can be known before writing.
+/// Returns 0, or an errno value if there is no space for `bytes` bytes, as far as this can be determined before
+/// writing.
 int room_for(int file, std::uint64_t bytes) {
-  // Beyond this limit the process would be killed by a signal.
+  // A signal would kill the process if the file exceeded this limit.
   rlimit most{};
   if (::getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) return EFBIG;
   if (::fallocate(file, 0, 0, static_cast<off_t>(bytes)) == 0) return 0;

@@ -11,19 +11,20 @@
 
 namespace tessera::system {
 
-/// How to start a program. The caller sets up its descriptors, `files`. All signals have their default action, and it
-/// is abandoned with this process's outputs (system/unfinished.hpp).
+/// A plan for starting a program. The caller sets up the program's descriptors in `files`. In the program all signals
+/// have their default action. The program is ended by abandon_outputs() (system/unfinished.hpp).
 class SpawnPlan {
  public:
-  /// `blocked`: signals blocked in the child.
+  /// `blocked` contains the signals that are blocked in the child.
   explicit SpawnPlan(std::initializer_list<int> blocked = {});
   ~SpawnPlan();
   SpawnPlan(const SpawnPlan&) = delete;
   SpawnPlan& operator=(const SpawnPlan&) = delete;
 
-  /// Signals from a terminal then reach only this process, not the child.
+  /// Starts the child in its own process group, so that signals from a terminal reach only this process.
   void set_own_group();
-  /// Returns 0 or an errno value. If the program has started, `process` is set and registered as unfinished.
+  /// Starts the program. Returns 0 or an errno value. If the program has started, `process` is set and registered as
+  /// unfinished.
   int start(const std::filesystem::path& program, std::vector<std::string> words, char* const* environment,
             pid_t& process);
 

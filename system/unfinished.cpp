@@ -23,13 +23,14 @@ struct Unfinished {
   std::vector<pid_t> programs;
 };
 
-/// Never destroyed: a signal may arrive while the process ends.
+/// Returns the list of unfinished things. It is never destroyed, because a signal may arrive while the process ends.
 Unfinished& unfinished() {
   static auto* const all = new Unfinished;
   return *all;
 }
 
-/// The same names in a form that a handler can read. The thread that exchanges a name for null owns it and may free it.
+/// The names of the files in a form that a signal handler can read. The thread that replaces a name by null owns the
+/// name and may free it.
 std::array<std::atomic<char*>, 64> part_names{};
 std::array<std::atomic<pid_t>, 64> program_numbers{};
 
@@ -79,7 +80,7 @@ inline namespace v0_1 {
 
 void abandon_outputs() noexcept {
   system::Unfinished& all = system::unfinished();
-  // A file system that does not respond must not block the process: its files then stay.
+  // A file system that does not respond must not block the process. In this case the files remain.
   std::unique_lock lock(all.naming, std::chrono::seconds(1));
   if (!lock.owns_lock()) return;
   for (const std::filesystem::path& part : all.parts) ::unlink(part.c_str());
