@@ -12,7 +12,7 @@ namespace tessera::scene {
 /// Whether numbers in this byte order must be swapped on this machine.
 constexpr bool is_swapped(bool big_endian) { return big_endian != (std::endian::native == std::endian::big); }
 
-/// A number of 1, 2, 4 or 8 bytes with its bytes reversed.
+/// Returns a number of 1, 2, 4 or 8 bytes with its bytes reversed.
 template <class T>
 T byteswapped(T number) {
   if constexpr (sizeof(T) == 8)
@@ -25,7 +25,7 @@ T byteswapped(T number) {
     return number;
 }
 
-/// The number that begins at `bytes`, in this machine's byte order or, if `swapped`, the other.
+/// Reads the number that begins at `bytes`, in this machine's byte order or, if `swapped`, in the other one.
 template <class T>
 T load(const void* bytes, bool swapped) {
   T number;
@@ -33,7 +33,7 @@ T load(const void* bytes, bool swapped) {
   return swapped ? byteswapped(number) : number;
 }
 
-/// Swaps the bytes of each of the numbers of type T.
+/// Reverses the bytes of each number of type T.
 template <class T>
 void swap_numbers(std::span<std::byte> bytes) {
   for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {

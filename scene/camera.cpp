@@ -25,8 +25,8 @@ using std::numbers::pi;
 
 constexpr double least_scale = 1e-300, largest_number = 1e300;
 
-/// Whether a view's half height, in world units or as a tangent, gives pixel sizes that a double represents with full
-/// precision.
+/// Whether the size of a pixel is a double with full precision, for this half height of the view (in world units, or as
+/// a tangent).
 bool has_pixels(double half_height) { return half_height >= least_scale && half_height <= largest_number; }
 
 bool in_reach(const glm::dvec3& v) { return finite(v) && largest(v) <= largest_number; }
@@ -82,7 +82,8 @@ double diagonal(const Box& box) {
   if (box.empty()) return 0;
   const glm::dvec3 extent = box.high - box.low;
   const double longest = std::max({extent.x, extent.y, extent.z});
-  return longest > 0 ? glm::length(extent / longest) * longest : 0;  // 1e-200 must not underflow when squared
+  return longest > 0 ? glm::length(extent / longest) * longest : 0;  // divided first, because 1e-200 would underflow
+                                                                     // when squared
 }
 
 Camera orbit(const Camera& camera, double turn) {

@@ -27,7 +27,7 @@ using std::numbers::pi;
 
 constexpr double degree = pi / 180;
 
-/// The direction from the centre to the eye, and the up direction.
+/// The direction from the centre of the box to the eye, and the up direction.
 struct Direction {
   glm::dvec3 to_eye, up;
 };
@@ -54,13 +54,13 @@ Camera framed(const Box& box, ImageSize size, const glm::dvec3& to_eye, const gl
   camera.position = center + to_eye * (3 * radius);
   camera.view_up = upward;
 
-  std::vector<glm::dvec3> outline;  // offsets from the centre that must be in the image
+  std::vector<glm::dvec3> outline;  // offsets, from the centre, of points that must be in the image
   outline.reserve(8);
   for (int corner = 0; corner < 8; ++corner)
     outline.emplace_back((corner & 1) ? half.x : -half.x, (corner & 2) ? half.y : -half.y,
                          (corner & 4) ? half.z : -half.z);
   if (turning) {
-    constexpr int steps = 72;  // between two steps a corner moves out by 0.1 %, well within the margin
+    constexpr int steps = 72;  // between two steps a corner moves outwards by at most 0.1 %, much less than the margin
     for (int step = 1; step < steps; ++step)
       for (int corner = 0; corner < 8; ++corner)
         outline.push_back(rotated(outline[static_cast<std::size_t>(corner)], upward, step * 2 * pi / steps));
@@ -75,7 +75,7 @@ Camera framed(const Box& box, ImageSize size, const glm::dvec3& to_eye, const gl
     const double needed =
         std::max(std::abs(glm::dot(offset, basis.up)), std::abs(glm::dot(offset, basis.right)) / aspect);
     fit = std::max(fit, needed);
-    // Perspective: at distance + z the half height of the window is (distance + z) tan.
+    // Perspective: at depth distance + z the half height of the view is (distance + z) times the tangent.
     distance = std::max(distance, needed / slope - glm::dot(offset, basis.forward));
   }
   camera.parallel_scale = margin * (fit > 0 ? fit : radius);
@@ -99,7 +99,7 @@ double extent_along(const glm::dvec3& half, const glm::dvec3& axis) {
 
 Direction default_direction(const Box& box, const std::optional<glm::dvec3>& asked_up, BodyAxes axes) {
   const glm::dvec3 up = asked_up ? unit(*asked_up) : glm::dvec3(0, 0, 1);
-  // The side towards the eye, level with the horizon: the one at +z if y is up.
+  // The side towards the eye, at the level of the horizon; if y is up, it is the side at +z.
   const glm::dvec3 face = std::abs(up.y) > 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, axes == BodyAxes::ras ? 1 : -1, 0);
   glm::dvec3 front = unit(face - up * glm::dot(face, up));
   glm::dvec3 right = glm::cross(up, front);
@@ -116,7 +116,7 @@ Direction direction_of(const ViewRequest& request, const Box& box, BodyAxes axes
     return Direction{to_eye, request.up ? unit(*request.up) : up};
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  // Towards the front and the left of a patient; otherwise the file's -y and -x.
+  // Directions to the front and to the left of a patient; for other data, the file's -y and -x.
   const glm::dvec3 front = axes == BodyAxes::ras ? y : -y, left = axes == BodyAxes::lps ? x : -x;
   switch (request.view) {
     case StandardView::front:
@@ -149,7 +149,8 @@ Direction direction_of(const ViewRequest& request, const Box& box, BodyAxes axes
   return default_direction(box, request.up, axes);
 }
 
-/// VTK's Azimuth and then Elevation. At a pole vtkCamera's view up would be along the view: here it turns with it.
+/// Applies vtkCamera's Azimuth and then its Elevation. At a pole, vtkCamera's view up would be along the view
+/// direction; here the up direction turns with the view.
 Direction turned(Direction direction, const ViewRequest& request) {
   if (request.azimuth != 0) direction.to_eye = rotated(direction.to_eye, direction.up, request.azimuth * degree);
   if (request.elevation != 0) {
@@ -166,7 +167,7 @@ Camera zoomed(Camera camera, double zoom) {
   if (camera.projection == ProjectionKind::orthographic) {
     camera.parallel_scale /= zoom;
   } else {
-    // By the tangent, so that sizes in the image grow exactly by `zoom`; vtkCamera divides the angle.
+    // The tangent is divided, so that sizes in the image grow exactly by `zoom`. vtkCamera divides the angle.
     camera.view_angle = 2 * std::atan(std::tan(camera.view_angle / 2 * degree) / zoom) / degree;
   }
   try {
@@ -204,8 +205,9 @@ Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection, bool
     camera.projection = projection;
     return camera;
   }
-  // Look across the two longest sides, a little from above and from the right: the shortest side points roughly at the
-  // eye, so that plates show their face, and the longest side runs along the image's width.
+  // The two longest sides are seen from the front, a little from above and from the right. The shortest side points
+  // approximately to the eye, so that plates show their large face, and the longest side is along the width of the
+  // image.
   const glm::dvec3 half = extent_of(box).half;
   std::array<int, 3> axes{0, 1, 2};
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return half[a] > half[b]; });

@@ -18,7 +18,7 @@ std::string joined(std::string_view subject, std::string_view problem, std::stri
 }
 
 std::string_view between(std::string_view line, std::size_t begin, std::size_t end) noexcept {
-  begin = std::min(begin, line.size());  // what() ends at the first null character
+  begin = std::min(begin, line.size());  // the text of what() ends at the first null character
   return {line.data() + begin, std::min(end, line.size()) - begin};
 }
 

@@ -8,15 +8,16 @@
 
 namespace tessera::scene {
 
-/// The only exception type of the project. Libraries throw it at their boundary and never print or exit; `apps/` turns
-/// it into a line and a status, and the names of settings in it into options.
+/// The only exception type of the project. Libraries throw it at their boundary and never print or exit. `apps/`
+/// converts an error to a line and an exit status, and replaces the names of settings by options.
 using tessera::Error;
 using tessera::ErrorCode;
 
 using tessera::bad_input;
 
-/// The same error, with all of `subject` as its subject if the line begins with `SUBJECT: `. For callers that passed a
-/// file's name to a function that failed: names may contain the separators at which Error splits lines.
+/// If the line of the error begins with `subject` and ": ", returns the error with all of `subject` as its subject. For
+/// callers that passed the name of a file to a function that failed, since names may contain the separators at which
+/// Error splits lines.
 Error with_subject(const Error& error, std::string_view subject);
 
 }  // namespace tessera::scene

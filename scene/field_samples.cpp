@@ -16,15 +16,16 @@ constexpr double points_in_all = 1 << 14;
 constexpr int most_points_a_tet = 4096;
 constexpr std::int64_t points_along_axis = 40;
 
-/// Number j of a sequence that fills [0, 1) evenly, if `step` is badly approximable by fractions.
+/// Returns number j of a sequence. The sequence fills [0, 1) evenly if `step` is an irrational number that fractions
+/// approximate badly.
 double uniform(std::uint64_t j, double step) {
   const double u = 0.5 + step * static_cast<double>(j & 0xffffffff);
   return u - std::floor(u);
 }
 
-/// Barycentric coordinates of point j of a sequence that fills a tet evenly. Source: Roberts, "The unreasonable
-/// effectiveness of quasirandom sequences", 2018, for the R3 sequence; differences of sorted uniform numbers are
-/// uniform barycentric coordinates (Devroye, "Non-Uniform Random Variate Generation", 1986, V.2.1).
+/// Returns the barycentric coordinates of point j of a sequence that fills a tet evenly. Source: Roberts, "The
+/// unreasonable effectiveness of quasirandom sequences", 2018, for the R3 sequence; differences of sorted uniform
+/// numbers are uniform barycentric coordinates (Devroye, "Non-Uniform Random Variate Generation", 1986, V.2.1).
 std::array<double, 4> barycentric(std::uint64_t j) {
   std::array<double, 3> u{uniform(j, 0.8191725133961645), uniform(j, 0.6710436067037893),
                           uniform(j, 0.5497004779019703)};
@@ -45,9 +46,9 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
   out.sides = extent / out.longest;
   const double face =
       std::max({out.sides.x * out.sides.y, out.sides.y * out.sides.z, out.sides.z * out.sides.x, 1e-300});
-  // At least as large as the volume of all tets: volume_sum() rounds each one down, and in a box a million million
-  // times as long as wide it rounds to zero. If the volume were too small, every tet would get the maximum number of
-  // points.
+  // The volume must be at least that of all tets. volume_sum() rounds the volume of each tet down, and in a box whose
+  // length is 1e12 times its width, it rounds to zero. If the volume were too small, every tet would have the maximum
+  // number of points.
   const double volume = (whole.mean_thickness + std::numeric_limits<double>::denorm_min()) / out.longest * face +
                         static_cast<double>(whole.tets) * 0x1p-100;
   const std::uint64_t stride = std::max<std::uint64_t>(1, (whole.tets + most_examined_tets - 1) / most_examined_tets);
@@ -66,8 +67,8 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
     const int points =
         static_cast<int>(std::clamp(std::ceil(tet_volume / volume * points_in_all), 1.0, double{most_points_a_tet}));
     for (int j = 0; j < points; ++j) {
-      // Each tet uses another interval of the sequence; otherwise all samples of a regular mesh would be at one place
-      // of its cells.
+      // Each tet uses another part of the sequence. Otherwise all samples of a regular mesh would be at the same place
+      // in their cells.
       const std::array<double, 4> share = barycentric(number * 127 + static_cast<std::uint64_t>(j));
       glm::dvec3 at(0);
       double value = 0;
@@ -90,8 +91,8 @@ namespace {
 /// Parts of equal length of one axis of a grid, in index space.
 struct AxisParts {
   std::int64_t parts = 1;
-  double length = 0;       ///< of each part, in lattice steps
-  std::int64_t cells = 1;  ///< that contain places
+  double length = 0;       ///< length of each part, in lattice steps
+  std::int64_t cells = 1;  ///< number of cells that contain places
 
   AxisParts(const GridGeometry& geometry, std::size_t axis) {
     const std::int64_t steps = geometry.points[axis] - 1;
@@ -100,7 +101,7 @@ struct AxisParts {
     length = static_cast<double>(steps) / static_cast<double>(parts);
     cells = steps;
   }
-  /// The cell, and the position in it, at a fraction of part `i`.
+  /// Returns the cell, and the position in this cell, at a fraction of part `i`.
   [[nodiscard]] std::pair<std::int64_t, double> at(std::int64_t i, double fraction) const {
     const double x = (static_cast<double>(i) + fraction) * length;
     const std::int64_t cell = std::clamp<std::int64_t>(static_cast<std::int64_t>(x), 0, cells - 1);
@@ -108,7 +109,7 @@ struct AxisParts {
   }
 };
 
-/// The rows of samples around places with one y and z, and the interpolated field.
+/// The rows of samples around places with the same y and z, from which the field is interpolated.
 class SampleRows {
  public:
   explicit SampleRows(const SampleSource& source)
@@ -117,7 +118,7 @@ class SampleRows {
         cells_(source.geometry().association == Association::cell),
         values_(static_cast<std::size_t>(4 * count_[0])) {}
 
-  /// Reads the rows of cell (j, k), at fractions y and z in it.
+  /// Reads the rows around cell (j, k), for places at the fractions y and z of the cell.
   void read(std::int64_t j, std::int64_t k, double y, double z) {
     const std::int64_t high_j = cells_ ? j : std::min(j + 1, count_[1] - 1);
     const std::int64_t high_k = cells_ ? k : std::min(k + 1, count_[2] - 1);
@@ -128,7 +129,8 @@ class SampleRows {
     source_.read(SampleBox{{0, j, k}, {count_[0], high_j + 1, high_k + 1}},
                  std::span<double>(values_).first(static_cast<std::size_t>(count_[0] * rows_ * slices_)));
   }
-  /// The value as stored, at a fraction x of cell i: NaN if a sample around it is NaN.
+  /// Returns the stored value, without scale and shift, at the fraction x of cell i. It is NaN if a sample around the
+  /// place is NaN.
   [[nodiscard]] double at(std::int64_t i, double x) const {
     if (cells_) return value(i, 0, 0);
     const std::int64_t next = std::min(i + 1, count_[0] - 1);
@@ -169,7 +171,7 @@ FieldSamples sample_grid(const SampleSource& source) {
   if (!(out.longest > 0) || !std::isfinite(out.longest)) return {};
   out.sides = extent / out.longest;
   const std::array<AxisParts, 3> axes{AxisParts(geometry, 0), AxisParts(geometry, 1), AxisParts(geometry, 2)};
-  // The local coordinate of a fraction of a cell.
+  // Returns the local coordinate of a place given by a cell and a fraction of the cell.
   const auto place = [&](std::size_t axis, const std::pair<std::int64_t, double>& at) {
     const std::int64_t next = std::min(at.first + 1, geometry.points[axis] - 1);
     return std::lerp(geometry.lattice(axis, at.first), geometry.lattice(axis, next), at.second);

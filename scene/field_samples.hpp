@@ -11,36 +11,37 @@
 #include "scene/sample_source.hpp"
 #include "scene/tet_mesh.hpp"
 
-/// A few thousand points of a field, spread over its volume: enough to estimate how its values are distributed over the
-/// volume and roughly what a ray meets, at a small part of the cost of reading the file.
+/// A few thousand samples of a field, distributed over its volume. They are sufficient to estimate how much of the
+/// volume each value occupies and, roughly, what a ray meets, at a small fraction of the cost of reading the file.
 namespace tessera::scene {
 
-/// A point of the field that represents some volume around it.
+/// A sample of the field that represents a volume around a point.
 struct FieldSample {
   double value = 0;
-  float volume = 0;           ///< in cubes of the longest side
-  std::array<float, 3> at{};  ///< in the box, from 0 to 1 along each of its sides
-  std::uint64_t tet = 0;      ///< meshes: index in the whole mesh, by which samples of parts are sorted
+  float volume = 0;           ///< represented volume, in units of the cube of the longest side
+  std::array<float, 3> at{};  ///< position in the box, from 0 to 1 along each side
+  std::uint64_t tet = 0;      ///< meshes: index of the tet in the whole mesh; samples of parts are sorted by it
 };
 static_assert(sizeof(FieldSample) == 32);
 
-/// Samples in an order that is independent of threads and of how a mesh was divided.
+/// Samples in an order that does not depend on the number of threads and on how a mesh is divided.
 struct FieldSamples {
   std::vector<FieldSample> samples;
-  glm::dvec3 sides{0};  ///< of the box, in units of the longest side; a grid's box is along its axes
-  double longest = 0;   ///< world units; 0 without extent, and so without samples
-  /// Grids: the value of the file nearest to each sample. For labels, interpolated values have no meaning.
+  glm::dvec3 sides{0};  ///< sides of the box, in units of the longest side; the box of a grid is along the grid's axes
+  double longest = 0;   ///< longest side, world units; 0 if the box has no extent; then there are no samples
+  /// Grids: for each sample the nearest value of the file, because interpolated values of labels have no meaning.
   std::vector<double> stored{};
 };
 
-/// Samples of a part of a mesh, whose tets have the indices `global_tet` in the whole mesh (empty: their own). In
-/// meshes of more than 2^16 tets only every 2nd, 3rd ... tet is used, by its index. The number of points in a tet grows
-/// with its volume, about 2^14 in all, at low-discrepancy places inside.
+/// Samples a part of a mesh. `global_tet` contains the indices of the part's tets in the whole mesh; if it is empty,
+/// the part is the whole mesh. In meshes of more than 2^16 tets, only every second, third ... tet by index is used. The
+/// number of points in a tet grows with its volume. There are about 2^14 points in all, at places of a low-discrepancy
+/// sequence in their tets.
 FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t> global_tet, const MeshFacts& whole);
 
-/// Samples of a grid: at least 40 along each axis that has an extent, each at some place in its own part of the grid,
-/// with the field as rays see it: trilinear between lattice points, constant in cells of cell data. Blank places are
-/// left out. Throws what the source throws.
+/// Samples a grid: at least 40 points along each axis that has an extent, each at some place in a part of the grid of
+/// its own. The field is the one that rays see: trilinear between lattice points, or constant in the cells of cell
+/// data. Blank places are left out. Throws the errors of the source.
 FieldSamples sample_grid(const SampleSource& source);
 
 }  // namespace tessera::scene

@@ -28,8 +28,8 @@ void FillTally::add(const FillTally& part) {
   others_.low = std::min(others_.low, part.others_.low), others_.high = std::max(others_.high, part.others_.high);
 }
 
-/// A fill value is farther away than half of the range of all other values, a huge one more than ten times the range.
-/// Huge ones take precedence over others.
+/// The distance of a fill value from all other values must be more than half of their range, and that of a huge fill
+/// value more than ten times their range. Huge fill values take precedence over others.
 std::optional<FillValue> FillTally::found() const {
   ValueRange others = others_;
   const auto gap_to = [&](const Usual& u) { return std::max(others.low - u.value, u.value - others.high); };

@@ -14,31 +14,32 @@
 
 namespace tessera::scene {
 
-/// From this magnitude on quantities are rare, and fill values of climate models common.
+/// Values of at least this magnitude are rarely quantities, but often fill values of climate models.
 inline constexpr double huge_value = 1e20;
 
-/// A value that many programs use for "no data" (-9999, 1e20, -FLT_MAX, the largest of an integer type, ...) and that
-/// is far from all others; or several: if a field has huge ones, only these.
+/// One or several values that many programs use for "no data" (-9999, 1e20, -FLT_MAX, the largest value of an integer
+/// type, ...) and that are far from all other values of the field. If a field has huge fill values, only these are
+/// included.
 struct FillValue {
-  double value = 0;              ///< the farthest
-  std::uint64_t count = 0;       ///< samples with one of these values
-  ValueRange others;             ///< of all other values
-  std::vector<double> values{};  ///< all, ascending
+  double value = 0;              ///< the fill value that is farthest from the other values
+  std::uint64_t count = 0;       ///< number of samples with one of the fill values
+  ValueRange others;             ///< range of all other values
+  std::vector<double> values{};  ///< all fill values, ascending
 
-  /// Whether a threshold excludes them.
+  /// Whether a threshold excludes the fill values.
   [[nodiscard]] bool is_outside(const std::optional<std::array<double, 2>>& threshold) const {
     return threshold && !(value >= (*threshold)[0] && value <= (*threshold)[1]);
   }
 
-  /// No quantity is likely to have this value: it may be left out automatically.
+  /// Whether the value is so large that a quantity is unlikely to have it, so that it may be left out automatically.
   [[nodiscard]] bool is_huge() const { return std::abs(value) >= huge_value; }
 };
 
-/// Whether a value is a common fill value. A cheap test before all values are read again.
+/// Whether a value is a common fill value. This cheap test decides whether all values are read again.
 bool may_be_fill(double value);
 
-/// For a field's values, or a part of them: how often each common fill value occurs, and the range of the others. The
-/// tallies of parts add up to that of the whole.
+/// Counts how often each common fill value occurs in a field or a part of it, and finds the range of the other values.
+/// The tallies of parts can be added to obtain the tally of the whole field.
 class FillTally {
  public:
   void add(double value) { add(value, 1); }
@@ -58,12 +59,13 @@ class FillTally {
   ValueRange others_;
 };
 
-/// For values with a known range; none unless may_be_fill() holds for one of its ends.
+/// Finds the fill value of a field with a known range. Returns none unless one end of the range is a common fill value
+/// (may_be_fill()).
 std::optional<FillValue> find_fill_value(std::span<const double> values, double low, double high);
 std::optional<FillValue> find_fill_value(const SampleSource& source, const ValueRange& range);
 
-/// The text of a note: how many `things` have the fill value (some, if the count is 0), and the threshold that leaves
-/// them out.
+/// Returns the text of a note that states how many `things` have the fill value ("some" if the count is 0), and the
+/// threshold that leaves them out.
 std::string words_on(const FillValue& fill, const char* things);
 
 }  // namespace tessera::scene

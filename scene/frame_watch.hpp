@@ -11,18 +11,20 @@
 
 namespace tessera::scene {
 
-/// Thrown through a frame that was asked to stop, to its caller. It is not an error.
+/// Thrown by a frame that ends because a stop was requested. It is not an error.
 struct FrameStopped {};
 
 inline void throw_if_stopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw FrameStopped{};
 }
 
-/// Observes a frame while it is rendered: receives pixels when they have their final values, and may stop it early.
+/// Observes a frame while it is rendered: receives pixels when they have their final values, and can stop the frame
+/// early.
 class FrameWatch {
  public:
-  /// `finished(rect, image)`: the pixels of `rect` in `image` are final; every pixel of the image is in one such
-  /// rectangle. Called by one thread at a time; an exception ends the frame and propagates from it.
+  /// Called as `finished(rect, image)` when the pixels of `rect` in `image` are final. Every pixel of the image is in
+  /// exactly one of these rectangles. Only one thread calls the function at a time. An exception ends the frame and
+  /// propagates to its caller.
   using Finished = std::function<void(const PixelRect&, const Image&)>;
 
   FrameWatch() = default;
@@ -31,18 +33,18 @@ class FrameWatch {
 
   [[nodiscard]] const std::stop_token& stop() const { return stop_; }
   [[nodiscard]] bool stopped() const { return stop_.stop_requested(); }
-  /// Throws FrameStopped once the frame must stop.
+  /// Throws FrameStopped if a stop of the frame was requested.
   void check() const { throw_if_stopped(stop_); }
 
-  /// Call before the frame begins.
+  /// Must be called before the frame begins.
   void listen(Finished finished) { finished_ = std::move(finished); }
   [[nodiscard]] bool wants_tiles() const { return static_cast<bool>(finished_); }
-  /// May be called from any thread.
+  /// Reports final pixels. May be called from any thread.
   void finished(const PixelRect& rect, const Image& image) {
     if (!finished_) return;
     const std::lock_guard lock(mutex_);
     if (failed_) return;
-    failed_ = true;  // unless it returns: no calls after an exception
+    failed_ = true;  // reset below if the call returns; after an exception there are no more calls
     finished_(rect, image);
     failed_ = false;
   }

@@ -58,7 +58,7 @@ glm::dvec3 index_of_world(const GridGeometry& geometry, const glm::dvec3& p_worl
 }
 
 glm::dmat3 world_to_local(const GridGeometry& geometry) {
-  // Avoids rounding in the most common case.
+  // This avoids rounding in the most common case.
   if (geometry.direction == glm::dmat3(1.0)) return geometry.direction;
   return glm::inverse(geometry.direction);
 }
@@ -137,7 +137,7 @@ void set_axes(GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps) {
     const glm::dvec3& step = steps[static_cast<std::size_t>(axis)];
     const double length = glm::length(step);
     geometry.spacing[axis] = length;
-    // validate() reports a zero length; the unit axis keeps its message specific.
+    // validate() reports the zero length. With a unit axis, it reports nothing else.
     geometry.direction[axis] = glm::dvec3(axis == 0, axis == 1, axis == 2);
     if (length > 0 && std::isfinite(length)) geometry.direction[axis] = step / length + 0.0;
   }

@@ -13,14 +13,15 @@ namespace {
 
 constexpr std::size_t most_label_values = 4096;
 
-/// Counts for one value: samples, and neighbour pairs that contain it; a pair of equal values counts once.
+/// Counts for one value: the samples with this value, and the pairs of neighbours that contain it. A pair of equal
+/// values is counted once.
 struct LabelTally {
   std::uint64_t samples = 0, equal = 0, unequal = 0;
 };
 
 class LabelTallies {
  public:
-  /// Adds a row; false: its values cannot be labels.
+  /// Adds a row. Returns false if its values cannot be labels.
   bool add(std::span<const double> row) {
     LabelTally* before = nullptr;
     double last = 0;
@@ -42,7 +43,7 @@ class LabelTallies {
         ++unequal_;
         add_step(value, last);
       }
-      before = &here, last = value;  // pointers to a map's values stay valid
+      before = &here, last = value;  // pointers to values of a map remain valid
     }
     return true;
   }
@@ -62,7 +63,8 @@ class LabelTallies {
     if (low->first >= 0 && high->first <= 63) return equal >= 0.5;
     return median_share() >= 0.5 && steps_ >= 2 * static_cast<double>(steps_counted_);
   }
-  /// For some of the slices: they may have fewer labels than the whole grid, and smaller shares.
+  /// Whether the grid may have labels, according to some of its slices. These may have fewer labels than the whole
+  /// grid, and smaller shares.
   [[nodiscard]] bool may_be_labels() const {
     if (values_.size() <= 24) return values_.size() <= 2 || equal_share() >= 0.2;
     return median_share() >= 0.4;
@@ -78,7 +80,7 @@ class LabelTallies {
 
  private:
   void add_step(double from, double to) { steps_ += std::abs(from - to), ++steps_counted_; }
-  /// The share of equal pairs among those that are not both background.
+  /// The share of pairs with equal values, out of the pairs that are not both background.
   [[nodiscard]] double equal_share() const {
     const auto ground = std::ranges::max_element(values_, {}, [](const auto& v) { return v.second.samples; });
     std::uint64_t equal = 0;
@@ -100,10 +102,11 @@ class LabelTallies {
 
   std::unordered_map<double, LabelTally> values_;
   double steps_ = 0;
-  std::uint64_t steps_counted_ = 0, unequal_ = 0;  ///< in the slice; along i
+  std::uint64_t steps_counted_ = 0, unequal_ = 0;  ///< number of compared neighbours, and of those with different
+                                                   ///< values, along i in the slice
 };
 
-/// Adds a slice of samples; false: not labels.
+/// Adds a slice of samples. Returns false if the values cannot be labels.
 bool add_slice(const SampleSource& source, std::int64_t k, std::vector<double>& values, LabelTallies& tallies) {
   const GridIndex n = source.geometry().samples();
   values.resize(static_cast<std::size_t>(n[0] * n[1]));
@@ -121,7 +124,7 @@ bool add_slice(const SampleSource& source, std::int64_t k, std::vector<double>& 
   return true;
 }
 
-/// Coordinates midway between points, extended by half a spacing at the ends.
+/// Returns the coordinates midway between points, and half a spacing beyond the first and the last point.
 std::vector<double> voxel_borders(const std::vector<double>& points) {
   if (points.size() < 2) return points;
   std::vector<double> borders;

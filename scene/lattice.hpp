@@ -7,26 +7,27 @@
 
 namespace tessera::scene {
 
-/// The integer lattice of depths and scalars in the lattice rasterizer: value = origin + n * unit, n a signed 32-bit
-/// integer, |n| <= 2^30 over the mesh.
+/// The integer lattice to which the lattice rasterizer rounds depths and scalars: value = origin + n * unit, where n is
+/// a signed 32-bit integer and |n| <= 2^30 over the mesh.
 ///
-/// Integers are exact where floats round: a face's plane is an integer at every pixel, the same for both cells that
-/// share the face, whatever tile, block or lane computes it, and wraps harmlessly outside the face. The step, 2^-30 of
-/// half the mesh's depth, is 64 times finer than a float's. Units are powers of two, so that conversions are exact.
+/// Integers are exact where floats round. The depth of a face's plane is an integer at every pixel. It is the same for
+/// both cells that share the face, in any tile, block or lane, and overflows only outside the face, where this does no
+/// harm. The step is 2^-30 of half of the mesh's depth, 64 times finer than that of a float. Units are powers of two,
+/// so that conversions are exact.
 struct Lattice {
   static constexpr double limit = 0x1p30;
 
   double depth_origin = 0, depth_unit = 0;
   double scalar_origin = 0, scalar_unit = 0;
 
-  /// The smallest power of two for which `limit` steps span `reach`.
+  /// Returns the smallest power of two for which `limit` steps are at least as long as `reach`.
   static double unit_for(double reach) {
     return reach > 0 ? std::exp2(std::max(std::ceil(std::log2(reach / limit)), -1000.0)) : 0x1p-30;
   }
 
   [[nodiscard]] static std::int32_t step_of(double value, double origin, double unit) {
     const double steps = std::nearbyint((value - origin) / unit);
-    // The form of these comparisons also maps NaN, which vertices of no cell may have, to the limit.
+    // These comparisons also map NaN to the limit. Only vertices without cells may be NaN.
     return static_cast<std::int32_t>(steps > -limit ? std::min(steps, limit) : -limit);
   }
   [[nodiscard]] std::int32_t depth_step(double depth) const { return step_of(depth, depth_origin, depth_unit); }

@@ -12,7 +12,7 @@
 namespace tessera::scene {
 namespace {
 
-/// Longest side of the box; 0 if it has no extent, or one that a double cannot represent.
+/// Longest side of the box; 0 if the box has no extent, or if a double cannot represent the extent.
 double longest_side(const Box& box) {
   if (box.empty()) return 0;
   const glm::dvec3 side = box.high - box.low;
@@ -44,10 +44,10 @@ VolumeSum volume_sum(const TetMeshView& mesh, const Box& box) {
   const auto volume_of = [&](const Tet& tet) {
     const glm::dvec3 &a = mesh.positions[tet[0]], &b = mesh.positions[tet[1]], &c = mesh.positions[tet[2]],
                      &d = mesh.positions[tet[3]];
-    // In units of the longest side, so that scenes of 1e-150 or 1e150 neither underflow nor overflow.
+    // Lengths are in units of the longest side, so that meshes of size 1e-150 or 1e150 neither underflow nor overflow.
     const double volume =
         std::abs(glm::dot((b - a) / longest, glm::cross((c - a) / longest, (d - a) / longest))) / 6;  // at most 1/3
-    // Two steps through 64 bits: a double's conversion to 128 is a slow call.
+    // The conversion has two steps of 64 bits, because converting a double to 128 bits is a slow function call.
     const double upper = volume * 0x1p62;
     const auto whole = static_cast<std::int64_t>(upper);
     const auto rest = static_cast<std::int64_t>((upper - static_cast<double>(whole)) * 0x1p38);

@@ -8,7 +8,8 @@
 
 namespace tessera::scene {
 
-/// Facts of the whole mesh that views, transfer functions and the projection need, however it is distributed.
+/// Facts of the whole mesh that views, transfer functions and the projection need. They do not depend on how the mesh
+/// is distributed.
 struct MeshFacts {
   Box box;                               ///< bounds()
   std::array<double, 2> scalar_range{};  ///< scalar_range()
@@ -22,18 +23,18 @@ struct MeshFacts {
 /// The facts of a whole mesh.
 MeshFacts facts_of(const TetMeshView& mesh);
 
-/// Combines the facts of two parts of one mesh; a part without tets changes nothing. Does not set `mean_thickness`,
-/// which needs the box of the whole first, then the sum of volume_sum() over the parts.
+/// Combines the facts of two parts of one mesh. A part without tets has no effect. `mean_thickness` is not set, because
+/// it requires first the box of the whole mesh and then the sum of volume_sum() over the parts.
 MeshFacts joined(const MeshFacts& a, const MeshFacts& b);
 
-/// Volume in units of 2^-100 of the cube over a box's longest side. Integers, so that a sum does not depend on its
-/// order; not even 2^28 tets that each fill the box overflow it.
+/// A volume in units of 2^-100 times the cube of a box's longest side. It is an integer, so that sums do not depend on
+/// their order. Even the sum of 2^28 tets that each fill the box does not overflow.
 using VolumeSum = __int128;
 
 /// Sum over the mesh's tets, each rounded down, with the box of the whole mesh. Zero if the box has no extent.
 VolumeSum volume_sum(const TetMeshView& mesh, const Box& box);
 
-/// mean_thickness() from the box and the volume of the whole mesh.
+/// Computes mean_thickness() from the box and the volume of the whole mesh.
 double mean_thickness(const Box& box, VolumeSum volume);
 
 }  // namespace tessera::scene

@@ -10,7 +10,7 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// Number of edits between two words, with three rows of the table at a time.
+/// Returns the number of edits between two words. Only three rows of the table are stored at a time.
 std::size_t changes(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -29,7 +29,7 @@ std::size_t changes(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names) {
-  constexpr std::size_t longest = 256;  // of file and field names; the time is quadratic
+  constexpr std::size_t longest = 256;  // longest compared name of a file or field, since the time is quadratic
   constexpr std::size_t most = 10'000;
   if (word.empty() || word.size() > longest) return std::nullopt;
   const std::string requested = lower_case(word);
@@ -46,7 +46,7 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
     for (const std::string& part : {known, known.substr(known.rfind('/') + 1)}) {
       const std::size_t all = std::max(part.size(), requested.size());
       if (all - std::min(part.size(), requested.size()) >= fewest) continue;
-      // Any other letter is one edit from a one-letter word.
+      // Every letter is one edit away from a word of one letter, so such a match does not count.
       if (const std::size_t count = changes(requested, part); count < fewest && count < requested.size()) {
         fewest = count;
         nearest = &name;

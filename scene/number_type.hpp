@@ -10,7 +10,7 @@
 #include "scene/grid.hpp"
 #include "tessera/array.hpp"
 
-/// Functions that depend on how a number is stored.
+/// Functions that depend on the type in which a number is stored.
 namespace tessera::scene {
 
 using tessera::NumberType;
@@ -49,10 +49,10 @@ inline std::size_t size_of(NumberType type) {
 
 /// int8, uint8, ..., float32, float64.
 const char* name_of(NumberType type);
-/// As in lists of fields and in NRRD: int8, uint8, ..., float, double.
+/// The name as in lists of fields and in NRRD: int8, uint8, ..., float, double.
 const char* listed_name(NumberType type);
 
-/// The same type for samples; none for 64-bit integers.
+/// Returns the SampleType for this type; none for 64-bit integers.
 std::optional<SampleType> sample_type_of(NumberType type);
 NumberType number_type_of(SampleType type);
 

@@ -9,7 +9,7 @@ namespace tessera::scene {
 
 using tessera::PixelRect;
 
-/// The intersection: an empty rectangle at a corner of `a` if there is none.
+/// Returns the intersection of two rectangles. If they do not intersect, it is an empty rectangle at a corner of `a`.
 inline PixelRect common(const PixelRect& a, const PixelRect& b) {
   const PixelRect both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
   return both.empty() ? PixelRect{a.x0, a.y0, a.x0, a.y0} : both;

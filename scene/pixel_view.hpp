@@ -9,9 +9,9 @@
 
 namespace tessera::scene {
 
-/// A world point as projected by a view: at (x / w, y / w), x to the right, y down, pixel (0, 0) with its centre at
-/// (0.5, 0.5). Orthographic: w = 1. Perspective: w = depth, negative behind the eye; the division is left to the
-/// caller.
+/// A world point projected by a view to pixel position (x / w, y / w), with x to the right and y downwards; the centre
+/// of pixel (0, 0) is at (0.5, 0.5). Orthographic views have w = 1. In perspective views w is the depth, which is
+/// negative behind the eye. The caller does the division.
 struct PixelPlace {
   double x, y, w;
   double depth;  ///< planar, along the view direction from the eye, world units
@@ -21,9 +21,9 @@ struct PixelPlace {
 struct PixelView {
   ViewBasis basis;
   glm::dvec3 position;
-  double half_width, half_height;  ///< of the image, pixels
+  double half_width, half_height;  ///< half of the image's sides, in pixels
   bool perspective;
-  double pixels_per_unit;  ///< orthographic: per world unit; perspective: per unit of tangent
+  double pixels_per_unit;  ///< pixels per world unit (orthographic) or per unit of tangent (perspective)
 
   /// Requires a valid camera and size.
   PixelView(const Camera& camera, ImageSize size)
@@ -42,14 +42,14 @@ struct PixelView {
             half_height * w - glm::dot(basis.up, p) * pixels_per_unit, w, depth};
   }
 
-  /// World length per unit of planar depth along the ray through a pixel position: 1 in orthographic projection.
+  /// Returns the world length per unit of planar depth along the ray through a pixel position; 1 in orthographic views.
   [[nodiscard]] double length_per_depth(double x, double y) const {
     if (!perspective) return 1;
     const double tx = (x - half_width) / pixels_per_unit, ty = (y - half_height) / pixels_per_unit;
     return std::sqrt(1 + tx * tx + ty * ty);
   }
 
-  /// Direction of the ray through a pixel position, in the world: one unit of planar depth.
+  /// Returns the direction of the ray through a pixel position, as a world vector whose planar depth is one.
   [[nodiscard]] glm::dvec3 direction(double x, double y) const {
     if (!perspective) return basis.forward;
     return basis.forward + basis.right * ((x - half_width) / pixels_per_unit) -

@@ -5,8 +5,8 @@
 
 namespace tessera::scene {
 
-/// Orders positions by x, then y, then z. Cells that share a face are split the same way, and meshes are watertight,
-/// only because all code that orders corners uses this order.
+/// Orders positions by x, then y, then z. All code that orders corners must use this order: only then are cells that
+/// share a face split in the same way, so that meshes are watertight.
 inline bool is_before(const glm::dvec3& a, const glm::dvec3& b) {
   if (a.x != b.x) return a.x < b.x;
   return a.y != b.y ? a.y < b.y : a.z < b.z;

@@ -6,7 +6,8 @@
 
 namespace tessera::scene {
 
-/// Text from outside in a message: quoted, one line, at most 40 characters, unprintable bytes as `?`.
+/// Returns text from a file or a user for use in a message: quoted, on one line, with at most 40 characters, and with
+/// `?` for unprintable bytes.
 std::string quote(std::string_view text);
 
 }  // namespace tessera::scene

@@ -23,7 +23,8 @@ void convert(const std::byte* source, std::int64_t stride, bool swapped, std::in
   }
 }
 
-/// Length of a tuple of components, in double precision; uses hypot if squares might overflow.
+/// Returns the Euclidean length of a tuple of components, in double precision. hypot is used if squares could overflow
+/// or underflow.
 template <class T>
 double tuple_length(const std::byte* tuple, int components, bool swapped) {
   double sum = 0;
@@ -110,7 +111,7 @@ template <class T>
 ValueRange range_by_reading(const SampleSource& source) {
   const Grid& grid = source.grid();
   const SampleBox all = grid.geometry.all_samples();
-  constexpr std::int64_t most = 1 << 18;  // samples at once: 2 MiB of doubles
+  constexpr std::int64_t most = 1 << 18;  // number of samples read at once: 2 MiB of doubles
   ValueRange range;
   std::vector<T> values;
   T low = std::numeric_limits<T>::infinity(), high = -low;
@@ -143,7 +144,7 @@ ValueRange range_by_reading(const SampleSource& source) {
 
 ValueRange value_range(const SampleSource& source) {
   if (const auto known = source.known_range(source.geometry().all_samples())) return *known;
-  // In the precision of the samples: magnitudes of floats are floats.
+  // The range is computed in the precision of the samples: magnitudes of floats are floats.
   return fits_float(source.grid().type) ? range_by_reading<float>(source) : range_by_reading<double>(source);
 }
 

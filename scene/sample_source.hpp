@@ -20,35 +20,37 @@ using tessera::SampleLayout;
 using tessera::SampleSource;
 using tessera::ValueRange;
 
-/// Converts `count` numbers, `stride` numbers apart in the source: from any type, `swapped` if they have the other byte
-/// order, to the same type, float32 or float64. Unaligned addresses are allowed.
+/// Converts `count` numbers, which are `stride` numbers apart in the source, from any type to the same type, float32 or
+/// float64. If `swapped`, the numbers in the source have the other byte order. Addresses need not be aligned.
 void convert_samples(const std::byte* source, SampleType from, std::int64_t stride, bool swapped, std::int64_t count,
                      std::byte* destination, SampleType to);
 
-/// Which number of an interleaved tuple is the sample.
+/// Specifies which number of an interleaved tuple is the sample.
 struct ComponentChoice {
-  int components = 1;                     ///< a tuple's length
-  int component = 0;                      ///< -1: the tuple's length (magnitude); Grid::type is then float32 or float64
-  SampleType type = SampleType::float32;  ///< of the tuple's numbers; equals Grid::type except for the magnitude
+  int components = 1;                     ///< number of components of a tuple
+  int component = 0;                      ///< index of the component; -1: the magnitude, for which Grid::type is
+                                          ///< float32 or float64
+  SampleType type = SampleType::float32;  ///< type of the tuple's numbers; equals Grid::type except for the magnitude
 };
 
-/// The samples of `count` tuples, `swapped` if they have the other byte order: the chosen number of each, as stored or
-/// converted to float32 or float64.
+/// Extracts the chosen number of each of `count` tuples, in the stored type or converted to float32 or float64. If
+/// `swapped`, the tuples have the other byte order.
 void convert_tuples(const std::byte* tuples, const ComponentChoice& choice, bool swapped, std::int64_t count,
                     std::byte* destination, SampleType to);
 
-/// Throws Error(bad_input) unless `bytes` is the size of all of the grid's tuples; `source` is the file's name.
+/// Throws Error(bad_input) unless `bytes` is the size of all of the grid's tuples. `source` is the file's name in the
+/// message.
 void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint64_t bytes, const std::string& source);
 
 /// Samples in memory, in the order of files (k slowest, i fastest, components interleaved).
 class MemorySource final : public SampleSource {
  public:
-  /// Keeps a copy of the bytes' owner, not of the bytes. Throws Error(bad_input) unless the bytes have the size that
-  /// the grid needs. `swapped`: they have the other byte order than this machine.
+  /// Makes a source of bytes that are not copied; `owner` keeps them alive. Throws Error(bad_input) unless the number
+  /// of bytes is that of the grid. If `swapped`, the numbers do not have the byte order of this machine.
   MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner, std::string source,
                std::optional<ComponentChoice> choice = std::nullopt, bool swapped = false);
 
-  /// Takes ownership of the numbers; grid.type becomes their type.
+  /// Makes a source that owns the numbers. The type of the grid is set to their type.
   template <class T>
   static std::unique_ptr<MemorySource> of(Grid grid, std::vector<T> values, std::string source = "volume");
 
@@ -61,7 +63,8 @@ class MemorySource final : public SampleSource {
   bool swapped_;
 };
 
-/// Range and blanks of a whole volume: its known_range(), or by reading it once, a few MiB at a time.
+/// Returns the range and the number of blanks of a whole volume: known_range(), or, if that is unknown, the result of
+/// reading all samples once, a few MiB at a time.
 ValueRange value_range(const SampleSource& source);
 
 /// Calls `use` with a zero of the C++ type of `type`.

@@ -14,8 +14,8 @@ Grid with_axes_scaled(Grid grid, const glm::dvec3& scale) {
   return grid;
 }
 
-/// The factor by which the axis becomes longer. Scales its direction, which only changes if the axis is not along one
-/// of the world's.
+/// Returns the factor by which an axis of the grid becomes longer, and updates its direction, which only changes if the
+/// axis is not along an axis of the world.
 double stretch(glm::dvec3& direction, const glm::dvec3& scale) {
   for (int axis = 0; axis < 3; ++axis)
     if (direction[(axis + 1) % 3] == 0 && direction[(axis + 2) % 3] == 0) return scale[axis];

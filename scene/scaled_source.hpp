@@ -9,13 +9,13 @@
 
 namespace tessera::scene {
 
-/// The grid with the axes of the world multiplied by `scale`, each factor above 0.
+/// Returns the grid with the axes of the world multiplied by `scale`, whose factors are above 0.
 GridGeometry scaled(GridGeometry geometry, const glm::dvec3& scale);
 
-/// The samples of another source, on its grid with the axes of the world scaled.
+/// The samples of another source, on the same grid with the axes of the world scaled.
 class ScaledSource final : public SampleSource {
  public:
-  /// `source`: the file's name in messages.
+  /// `source` is the file's name in messages.
   ScaledSource(std::unique_ptr<SampleSource> all, const glm::dvec3& scale, std::string source);
 
   [[nodiscard]] std::optional<ValueRange> known_range(const SampleBox& box) const override {

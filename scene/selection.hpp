@@ -12,7 +12,7 @@ namespace tessera::scene {
 using tessera::HalfSpace;
 using tessera::Selection;
 
-/// The normal with unit length, whatever its stored length.
+/// Returns the normal of the half-space with unit length.
 inline glm::dvec3 unit_normal(const HalfSpace& h) {
   const glm::dvec3 size = glm::abs(h.normal);
   return glm::normalize(h.normal / std::max({size.x, size.y, size.z}));

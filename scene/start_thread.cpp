@@ -28,7 +28,7 @@ int threads_running() {
 std::optional<Error> thread_fault(const std::exception& fault) {
   const auto* system = dynamic_cast<const std::system_error*>(&fault);
   const bool of_std = system != nullptr && system->code() == std::errc::resource_unavailable_try_again;
-  // oneTBB has no separate type for this error.
+  // oneTBB does not have an exception type for this error.
   const bool of_tbb = std::string_view(fault.what()).starts_with("pthread_create has failed");
   if (!of_std && !of_tbb) return std::nullopt;
   return Error(ErrorCode::system_failure,

@@ -11,11 +11,11 @@
 
 namespace tessera::scene {
 
-/// If `fault` reports that a thread could not start, the Error(system_failure) for the user. Recognises the exceptions
-/// of the standard library and of oneTBB.
+/// If `fault` reports that a thread could not be started, returns an Error(system_failure) for the user; otherwise
+/// none. Recognizes the exceptions of the standard library and of oneTBB.
 std::optional<Error> thread_fault(const std::exception& fault);
 
-/// A std::thread. Throws Error(system_failure) if the system does not provide more threads.
+/// Starts a std::thread. Throws Error(system_failure) if the system does not provide more threads.
 template <class Work>
 std::thread start_thread(Work&& work) {
   try {

@@ -14,9 +14,9 @@
 namespace tessera::scene {
 namespace {
 
-constexpr std::size_t most_surfaces = 128;  // 768 crossings: ten bits of a mark on the lattice
+constexpr std::size_t most_surfaces = 128;  // gives 768 crossings, which fit into ten bits of a mark on the lattice
 
-/// Takes a third of the time of std::pow.
+/// Computes an integer power, in a third of the time of std::pow.
 double whole_power(double base, int exponent) {
   double result = 1;
   for (; exponent > 0; exponent /= 2, base *= base)
@@ -28,7 +28,7 @@ const glm::dvec3 light_grey(0.6, 0.6, 0.6);
 
 bool is_light(double value) { return value >= 0 && std::isfinite(value); }
 
-/// `name`: the surface's name in messages.
+/// Throws for an invalid colour or opacity. `name` is the surface's name in messages.
 void check_paint(const std::string& name, const std::optional<glm::dvec3>& color, double opacity) {
   if (!(opacity > 0 && opacity <= 1))
     throw bad_input(fmt::format("{}: the opacity {} is not above 0 and at most 1", name, opacity));

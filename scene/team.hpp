@@ -9,27 +9,27 @@
 
 namespace tessera::scene {
 
-/// Processes that render one frame together in shared memory, each its share of every pass. All of them call the same
-/// functions in the same order, with the same sizes.
+/// Processes that render one frame together in shared memory. Each process does its share of every pass. All processes
+/// call the same functions in the same order, with the same sizes.
 class Team {
  public:
   virtual ~Team() = default;
 
-  /// The index of this member, 0 .. size() - 1.
+  /// The index of this member, 0 to size() - 1.
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
 
-  /// Returns when all members have called it: everything that they wrote to shared memory before is then visible.
-  /// Throws FrameStopped once one of them has left the frame, and the run's error once there is one.
+  /// Returns when all members have called this function. Everything that they wrote to shared memory before the call is
+  /// then visible to all. Throws FrameStopped if a member has left the frame, and the run's error if there is one.
   virtual void barrier() = 0;
-  /// Every member's number, in the order of members, on every member. Also a barrier.
+  /// Returns, on every member, the numbers of all members in the order of members. Also a barrier.
   virtual std::vector<std::uint64_t> gather(std::uint64_t word) = 0;
 
-  /// Draws the next of the `count` numbers 0, 1, ... that the members share in this epoch; returns `count` if none
-  /// remains. A later call with a larger count may return more. Any thread.
+  /// Returns the next of the numbers 0 to `count` - 1 that the members share in this epoch, or `count` if none remains.
+  /// A later call with a larger `count` may return more numbers. May be called from any thread.
   virtual std::uint32_t draw(std::uint32_t count) = 0;
 
-  /// The purposes of shared memory; each has one block.
+  /// The purposes of shared memory. There is one block for each purpose.
   enum class Room : std::uint8_t {
     positions,
     tets,
@@ -45,9 +45,9 @@ class Team {
   };
   static constexpr std::size_t room_count = 11;
 
-  /// At least `bytes` bytes visible to all members. The contents are kept until a call asks for more, or for less than
-  /// half; that call is a barrier. Throws Error(system_failure) on all members if the machine does not provide the
-  /// memory.
+  /// Returns at least `bytes` bytes that are visible to all members. The contents are kept until a call requests more
+  /// bytes, or less than half; that call is a barrier. Throws Error(system_failure) on all members if the machine does
+  /// not provide the memory.
   virtual std::byte* memory(Room room, std::size_t bytes) = 0;
   template <class T>
   T* memory_of(Room room, std::size_t count) {
@@ -61,14 +61,14 @@ struct Share {
   [[nodiscard]] std::size_t size() const { return last - first; }
 };
 
-/// A member's share of `count` items; all of them without a team.
+/// Returns this member's share of `count` items; all items without a team.
 inline Share share_of(std::size_t count, const Team* team) {
   if (team == nullptr) return {0, count};
   const auto rank = static_cast<std::size_t>(team->rank()), size = static_cast<std::size_t>(team->size());
   return {count * rank / size, count * (rank + 1) / size};
 }
 
-/// The smallest of all members' numbers; `number` itself without a team.
+/// Returns the smallest of all members' numbers; without a team, `number`.
 inline std::uint64_t least_of(std::uint64_t number, Team* team) {
   if (team == nullptr) return number;
   const std::vector<std::uint64_t> all = team->gather(number);

@@ -9,9 +9,9 @@
 
 namespace tessera::scene {
 
-/// The number of threads for a setting of `asked`; 0: all cores. At most the number that oneTBB gives this process: its
-/// cores, unless the caller has set a tbb::global_control. oneTBB warns on stderr of a larger arena, and no work here
-/// gains from more threads than cores.
+/// Returns the number of threads that are used if `asked` are requested; 0 requests all cores. The result is at most
+/// the number of threads that oneTBB allows this process: its cores, unless the caller has set a tbb::global_control.
+/// oneTBB prints a warning on stderr for a larger arena, and more threads than cores are never faster here.
 inline int threads_for(int asked) {
   const auto most = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   return std::min(asked > 0 ? asked : tbb::info::default_concurrency(), most);

@@ -27,7 +27,7 @@ void ThresholdSource::read_samples(const SampleBox& box, const SampleLayout& lay
     read_as<double>(box, layout, destination);
 }
 
-/// T: the type of the samples in memory.
+/// T is the type of the samples in memory.
 template <class T>
 void ThresholdSource::read_as(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const {
   std::vector<T> samples(static_cast<std::size_t>(box.count()));

@@ -9,12 +9,12 @@
 
 namespace tessera::scene {
 
-/// The samples of another source; those with values outside a closed range are blank. This leaves out whole voxels, for
-/// point data all with such a corner. Since blanks need a float type, samples are float32, or float64 if floats cannot
-/// represent the source's type.
+/// The samples of another source, in which samples with values outside a closed range are blank. Whole voxels are
+/// thereby left out: for point data, all voxels with such a corner. Since blank samples require a floating-point type,
+/// samples are float32, or float64 if float32 cannot represent the source's type.
 class ThresholdSource final : public SampleSource {
  public:
-  /// `source`: the file's name in messages.
+  /// `source` is the file's name in messages.
   ThresholdSource(std::unique_ptr<SampleSource> all, const std::array<double, 2>& range, std::string source);
 
   [[nodiscard]] GridIndex storage_block() const override { return all_->storage_block(); }

@@ -16,14 +16,15 @@
 
 namespace tessera::scene {
 
-/// Which of a file's time steps was read.
+/// The time step of a file that was read.
 struct TimeStepRead {
-  std::uint64_t count = 1;      ///< in the file; 1, or 0: it does not change with time
-  std::uint64_t step = 0;       ///< counted from 0
-  std::vector<double> times{};  ///< of all `count` steps if the file states them; otherwise empty
+  std::uint64_t count = 1;      ///< number of steps in the file; 0 or 1 if the data do not change with time
+  std::uint64_t step = 0;       ///< the step that was read, counted from 0
+  std::vector<double> times{};  ///< times of all `count` steps if the file states them; otherwise empty
 };
 
-/// The requested one of `count` steps, the last by default. Throws Error(bad_input) if it does not exist.
+/// Returns the requested one of `count` steps or, without a request, the last step. Throws Error(bad_input) if the
+/// requested step does not exist.
 inline TimeStepRead chosen_step(std::optional<std::size_t> requested, std::uint64_t count, const std::string& source) {
   if (requested && *requested >= std::max<std::uint64_t>(count, 1))
     throw bad_input(
@@ -31,14 +32,14 @@ inline TimeStepRead chosen_step(std::optional<std::size_t> requested, std::uint6
   return {count, requested.value_or(count == 0 ? 0 : count - 1), {}};
 }
 
-/// Keeps times only if there is one for each step and all are finite.
+/// Sets the times, but only if there is one for each step and all are finite.
 inline void set_times(TimeStepRead& read, std::vector<double> times) {
   if (times.size() == read.count && std::ranges::all_of(times, [](double t) { return std::isfinite(t); }))
     read.times = std::move(times);
 }
 
-/// `count` times starting at `first`, `step` apart; none if they are not finite and different, or if there are more
-/// than an intact file would have.
+/// Returns `count` times, beginning with `first`, at intervals of `step`. Returns none if the times are not finite and
+/// different from each other, or if there are more of them than an intact file would contain.
 inline std::vector<double> even_times(double first, double step, std::uint64_t count) {
   constexpr std::uint64_t most = 1 << 20;
   std::vector<double> times;
@@ -47,7 +48,7 @@ inline std::vector<double> even_times(double first, double step, std::uint64_t c
   return times;
 }
 
-/// The note about the time step; none if there is only one.
+/// Returns the note about the time step; none if there is only one step.
 inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> requested) {
   if (read.count <= 1) return std::nullopt;
   const std::string time =

@@ -15,21 +15,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// For this long after a thread's CPU clock was read, the thread is assumed to have run all the time.
+/// Within this time after a reading of its CPU clock, a thread is assumed to have run without interruption.
 constexpr double adjacent_us = 1;
 
 }  // namespace
 
 struct Trace::ThreadSpans {
-  /// Locked only by its own thread, except briefly when spans() reads: cheaper than reading a clock.
+  /// Locked only by the thread itself, except briefly while spans() reads. Such a lock is cheaper than reading a clock.
   std::mutex mutex;
   std::vector<TraceSpan> spans;
   std::uint32_t number = 0;
-  std::int32_t tile = -1;                     ///< for which its thread works
-  double wall_us = -adjacent_us, cpu_us = 0;  ///< when its thread last read its CPU clock
+  std::int32_t tile = -1;                     ///< the tile for which the thread works
+  double wall_us = -adjacent_us, cpu_us = 0;  ///< time of the thread's last reading of its CPU clock, and the result
 
-  /// The thread's CPU time at `now_us`. Reading that clock is an expensive system call (0.2 to 0.5 us); if one scope
-  /// begins where another ends, or a scope is empty, one reading serves both.
+  /// Returns the thread's CPU time at `now_us`. Reading the CPU clock is an expensive system call (0.2 to 0.5 us). If
+  /// one scope begins where another ends, or if a scope is empty, a single reading is used for both ends.
   double cpu_time(double now_us) {
     if (now_us - wall_us < adjacent_us) return cpu_us + (now_us - wall_us);
     timespec t{};
@@ -44,7 +44,7 @@ struct Trace::Recording {
   Clock::time_point origin = Clock::now();
   std::mutex mutex;
   std::unordered_map<std::thread::id, ThreadSpans*> of_thread;
-  std::vector<std::unique_ptr<ThreadSpans>> threads;  ///< by number
+  std::vector<std::unique_ptr<ThreadSpans>> threads;  ///< indexed by the number of the thread
 };
 
 Trace::Trace(TraceRole role) : recording_(std::make_shared<Recording>()), role_(role) {}
@@ -52,8 +52,8 @@ Trace::Trace(TraceRole role) : recording_(std::make_shared<Recording>()), role_(
 Trace::Trace(const Trace& other, TraceRole role) : recording_(other.recording_), role_(role) {}
 
 Trace::ThreadSpans& Trace::mine() {
-  // The last buffer of this thread. A later recording may have the address of an earlier one, but cannot have begun at
-  // the same instant.
+  // The last buffer that this thread used. A later recording may have the address of an earlier recording, but not the
+  // same time of its beginning.
   struct Last {
     const Recording* recording = nullptr;
     Clock::time_point origin;
@@ -120,7 +120,7 @@ void TraceScope::begin(const char* stage, std::int32_t frame) {
 void TraceScope::end() {
   const double end_us = trace_->now_us();
   Trace::ThreadSpans& mine = trace_->mine();
-  // A time extrapolated from an adjacent reading may be a little ahead of the clock.
+  // A CPU time that was extrapolated from an adjacent reading may be slightly larger than the CPU clock.
   const double cpu_us = std::max(0.0, mine.cpu_time(end_us) - start_cpu_us_);
   const TraceSpan span{stage_, mine.number, start_us_,      end_us - start_us_, cpu_us, frame_,
                        bytes_, messages_,   trace_->role(), mine.tile,          peer_};

@@ -14,9 +14,9 @@ using tessera::TraceRole;
 using tessera::TraceScope;
 using tessera::TraceSpan;
 
-/// Times stages that alternate too quickly for a scope each (sixteen cells, sixteen pixels). It reads the processor's
-/// own counter, which takes some ten nanoseconds; at the end every stage gets one span with its share of the time, one
-/// after the other. Does nothing if `trace` is null.
+/// Measures the times of stages that alternate too quickly to use a scope for each (every sixteen cells or pixels). The
+/// timer reads the processor's own counter, which takes some ten nanoseconds. At the end, one span is recorded for each
+/// stage, with its share of the time; these spans follow one another. Does nothing if `trace` is null.
 class StageTimer {
  public:
   explicit StageTimer(Trace* trace) : trace_(trace) {
@@ -25,7 +25,8 @@ class StageTimer {
   ~StageTimer() {
     if (trace_ != nullptr) end();
   }
-  /// Adds the time since the last call, or the beginning, to `stage`, a string literal; at most six different ones.
+  /// Adds the time since the last call, or since the beginning, to `stage`. `stage` must be a string literal; there may
+  /// be at most six different stages.
   void record(const char* stage) {
     if (trace_ != nullptr) add(stage);
   }
@@ -48,8 +49,8 @@ class StageTimer {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
-/// While it exists, spans that end on its thread belong to this tile, whatever their role. Does nothing if `trace` is
-/// null.
+/// While an object of this class exists, spans of any role that end on its thread belong to its tile. Does nothing if
+/// `trace` is null.
 class TraceTile {
  public:
   TraceTile(Trace* trace, std::size_t tile) : trace_(trace) {

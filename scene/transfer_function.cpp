@@ -17,7 +17,8 @@ using scene::bad_input;
 
 bool emits(const Knot& k) { return k.color.x > 0 || k.color.y > 0 || k.color.z > 0; }
 
-/// Far beyond any visible value: light and optical depth stay finite along rays of any length, in single precision.
+/// Limits far beyond any visible value. With them, light and optical depth are finite along rays of any length, in
+/// single precision.
 constexpr double most_color = 1e30, most_extinction = 1e100;
 
 void check(const Knot& knot, std::size_t number) {
@@ -40,7 +41,7 @@ TransferFunction::TransferFunction(std::vector<Knot> knots) {
     if (i > 0 && knots[i].value < knots[i - 1].value)
       throw bad_input(fmt::format("knot {}: value {} is below the value before it, {}; sort the knots", i + 1,
                                   knots[i].value, knots[i - 1].value));
-    // Neighbours this close have no finite slope.
+    // The slope between neighbours as close as this would not be finite.
     if (i > 0 && knots[i].value - knots_.back().value < std::numeric_limits<double>::min())
       knots[i].value = knots_.back().value;
     const std::size_t n = knots_.size();
@@ -65,7 +66,7 @@ Knot TransferFunction::evaluate(double s) const {
   const Knot& low = *(above - 1);
   if (above == knots_.end() || low.value == s) return {s, low.color, low.extinction};
   const Knot& high = *above;
-  // Halved differences: high - low may overflow for values near the ends of double's range.
+  // The differences are halved, because high - low may overflow for values near the ends of the range of double.
   const double u = (s * 0.5 - low.value * 0.5) / (high.value * 0.5 - low.value * 0.5);
   return {s, low.color + (high.color - low.color) * u, low.extinction + (high.extinction - low.extinction) * u};
 }
@@ -73,8 +74,8 @@ Knot TransferFunction::evaluate(double s) const {
 bool TransferFunction::visible(double low, double high, bool emits_without_extinction) const {
   const auto shows = [&](const Knot& k) { return k.extinction > 0 || (emits_without_extinction && emits(k)); };
   if (shows(evaluate(low)) || shows(evaluate(high))) return true;
-  // Between the two ends the function is positive only if it is positive at a knot strictly inside, or at a step's
-  // lower knot at `high` (which the function approaches).
+  // Between the two ends, the function is positive only if it is positive at a knot strictly inside or at the lower
+  // knot of a step at `high`, whose value the function approaches.
   const auto begin =
       std::upper_bound(knots_.begin(), knots_.end(), low, [](double v, const Knot& k) { return v < k.value; });
   const auto end =

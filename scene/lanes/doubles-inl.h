@@ -25,7 +25,7 @@ struct DoubleMasks {
   MD low, high;
 };
 
-/// f(vectors), for both halves.
+/// Applies f to vectors, for both halves.
 template <class Function, class... Args>
 HWY_INLINE Doubles in_halves(const Function& f, const Args&... v) {
   return {f(v.low...), f(v.high...)};
@@ -63,7 +63,7 @@ HWY_INLINE VF demote(Doubles v) {
   const hn::Half<DF> half;
   return Combine(DF(), DemoteTo(half, v.high), DemoteTo(half, v.low));
 }
-/// Of whole numbers that 32 bits hold.
+/// Converts whole numbers that fit into 32 bits to integers.
 HWY_INLINE VI in_integers(Doubles v) {
   const hn::Half<DI> half;
   return Combine(DI(), DemoteTo(half, v.high), DemoteTo(half, v.low));
@@ -81,7 +81,7 @@ HWY_INLINE void store(Doubles v, double* to) {
   const DD d;
   Store(v.low, d, to), Store(v.high, d, to + hn::Lanes(d));
 }
-/// numbers[i].
+/// Returns numbers[i] in each lane.
 HWY_INLINE Doubles gather(const double* numbers, VI i) {
   const hn::RebindToSigned<DD> di;
   const hn::Half<DI> half;

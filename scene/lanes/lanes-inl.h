@@ -31,7 +31,7 @@ using DD = hn::ScalableTag<double>;
 using VD = hn::Vec<DD>;
 using MD = hn::Mask<DD>;
 
-/// The lanes of a mask, a bit each.
+/// Returns the mask as bits, one for each lane.
 template <class D>
 HWY_INLINE unsigned bits_of_mask(D d, hn::Mask<D> mask) {
   std::uint8_t bits[8] = {0};
@@ -42,7 +42,7 @@ HWY_INLINE unsigned lane_bits(MF mask) { return bits_of_mask(DF(), mask); }
 HWY_INLINE unsigned lane_bits(MI mask) { return bits_of_mask(DI(), mask); }
 HWY_INLINE unsigned lane_bits(MD mask) { return bits_of_mask(DD(), mask); }
 
-/// table[i], 16 numbers; 0 <= i < 16.
+/// Returns table[i] for a table of 16 numbers; 0 <= i < 16.
 template <class T>
 HWY_INLINE hn::Vec<hn::ScalableTag<T>> lookup_16(const T* table, VI i) {
   const hn::ScalableTag<T> d;
@@ -52,8 +52,8 @@ HWY_INLINE hn::Vec<hn::ScalableTag<T>> lookup_16(const T* table, VI i) {
     return GatherIndex(d, table, i);
 }
 
-/// Towards zero, of numbers that integers can represent. Highway's ConvertTo also handles others, in four instructions
-/// more.
+/// Rounds towards zero. The numbers must be in the range of the integers. Highway's ConvertTo also handles other
+/// numbers, which takes four more instructions.
 HWY_INLINE VI truncated(VF v) {
 #if HWY_TARGET <= HWY_AVX3
   return VI{_mm512_cvttps_epi32(v.raw)};
@@ -64,7 +64,7 @@ HWY_INLINE VI truncated(VF v) {
 #endif
 }
 
-/// The lesser of |a| and |b|.
+/// Returns the smaller one of |a| and |b|.
 HWY_INLINE VF least_magnitude(VF a, VF b) {
 #if HWY_TARGET <= HWY_AVX3
   constexpr int least_absolute = 2, sign_cleared = 2 << 2;
@@ -74,7 +74,8 @@ HWY_INLINE VF least_magnitude(VF a, VF b) {
 #endif
 }
 
-/// Of each lane's two signed 16-bit halves: low times low plus high times high.
+/// Treats each lane as two signed 16-bit halves. Returns the product of the low halves plus the product of the high
+/// halves.
 HWY_INLINE VI dot_of_halves(VI a, VI b) {
 #if HWY_TARGET <= HWY_AVX3
   return VI{_mm512_madd_epi16(a.raw, b.raw)};
@@ -88,7 +89,7 @@ HWY_INLINE VI dot_of_halves(VI a, VI b) {
 #endif
 }
 
-/// a > b, in lanes of the mask.
+/// Returns a > b in lanes of the mask, false in others.
 HWY_INLINE MF greater_where(MF mask, VF a, VF b) {
 #if HWY_TARGET <= HWY_AVX3
   return MF{_mm512_mask_cmp_ps_mask(mask.raw, a.raw, b.raw, _CMP_GT_OQ)};
@@ -97,7 +98,7 @@ HWY_INLINE MF greater_where(MF mask, VF a, VF b) {
 #endif
 }
 
-/// `v`, with `bits` set in lanes of the mask.
+/// Returns `v`, with `bits` set in lanes of the mask.
 HWY_INLINE VI or_where(MI mask, VI v, VI bits) {
 #if HWY_TARGET <= HWY_AVX3
   return VI{_mm512_mask_or_epi32(v.raw, mask.raw, v.raw, bits.raw)};
@@ -106,7 +107,7 @@ HWY_INLINE VI or_where(MI mask, VI v, VI bits) {
 #endif
 }
 
-/// low[i] for i < lanes, high[i - lanes] above; 0 <= i < 2 lanes.
+/// Returns low[i] for i < L and high[i - L] for i >= L, where L is the number of lanes; 0 <= i < 2 L.
 HWY_INLINE VF lookup_two(VF low, VF high, VI i) {
 #if HWY_TARGET <= HWY_AVX3
   return VF{_mm512_permutex2var_ps(low.raw, i.raw, high.raw)};
@@ -129,13 +130,14 @@ HWY_INLINE VI lookup_two(VI low, VI high, VI i) {
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// Consecutive floats into the lanes of the mask, others from `otherwise`. Memory that lanes outside the mask would
-/// have need not exist.
+/// Loads consecutive floats, each into the lane of its position, for the lanes of the mask; other lanes are those of
+/// `otherwise`. Memory at the positions of other lanes is not accessed.
 HWY_INLINE VF load_where(unsigned mask, const float* from, VF otherwise) {
   return VF{_mm512_mask_loadu_ps(otherwise.raw, static_cast<__mmask16>(mask), from)};
 }
 
-/// As many consecutive floats as the mask has lanes, into these in order; others from `otherwise`.
+/// Loads as many consecutive floats as the mask has lanes, into these lanes in order; other lanes are those of
+/// `otherwise`.
 HWY_INLINE VF expand_load(MF mask, const float* from, VF otherwise) {
   return VF{_mm512_mask_expandloadu_ps(otherwise.raw, mask.raw, from)};
 }

@@ -22,7 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::scene {
 namespace HWY_NAMESPACE {
 
-/// Packs vectors of 32-bit lanes by one mask.
+/// Moves the lanes of a mask to the front, in vectors of 32-bit lanes.
 class LanePacker {
  public:
   explicit HWY_INLINE LanePacker(MI mask) : mask_(mask), count_(CountTrue(DI(), mask)) {
@@ -58,7 +58,7 @@ class LanePacker {
 #endif
 };
 
-/// Packs vectors of 64-bit lanes by one mask: a lane is a pair of 32 bits.
+/// Moves the lanes of a mask to the front, in vectors of 64-bit lanes. Each lane is treated as a pair of 32-bit lanes.
 class WideLanePacker {
  public:
   using DU = hn::RebindToUnsigned<DD>;
@@ -66,7 +66,7 @@ class WideLanePacker {
 
   explicit HWY_INLINE WideLanePacker(hn::Mask<DU> mask) : mask_(mask), count_(CountTrue(DU(), mask)) {
 #if HWY_TARGET > HWY_AVX3
-    // Each bit twice: 0 0 b1 b1 b0 b0 ...
+    // Each bit is repeated: 0 0 b1 b1 b0 b0 ...
     const unsigned b = bits_of_mask(DU(), mask);
     pairs_ = 3 * ((b & 1) | (b & 2) << 1 | (b & 4) << 2 | (b & 8) << 3);
 #endif

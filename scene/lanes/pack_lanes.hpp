@@ -6,9 +6,10 @@
 
 namespace tessera::scene {
 
-/// Which lane comes i-th when the lanes of a mask are moved to the front: order[mask bits][i], for 8 lanes of 32 bits,
-/// and for 4 as the bytes of a shuffle. (Highway 1.0's Compress copies its tables to the stack at every call under some
-/// compilers, which takes 40 times as long as the permutation.)
+/// The orders of lanes that move the lanes of a mask to the front: order[mask bits][i] is the lane that moves to
+/// position i. There is a table for 8 lanes of 32 bits, and one for 4 lanes, as the bytes of a shuffle. (With some
+/// compilers, Compress of Highway 1.0 copies its tables to the stack in every call, which takes 40 times as long as the
+/// permutation.)
 struct PackingOrders {
   alignas(32) std::array<std::array<std::int32_t, 8>, 256> lanes8{};
   alignas(16) std::array<std::array<std::uint8_t, 16>, 16> bytes4{};
