@@ -13,7 +13,7 @@ typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier, moderniz
 
 namespace tessera::analysis {
 
-/// A few shapes drawn with Cairo. Lengths are in points, y points downwards, colours are 0xRRGGBB.
+/// Draws a few kinds of shapes with Cairo. Lengths are in points, y points downwards, and colours are 0xRRGGBB.
 class Canvas {
  public:
   explicit Canvas(cairo_t* cairo);
@@ -22,9 +22,10 @@ class Canvas {
   void disc(double x, double y, double radius, std::uint32_t rgb);
   void line(double x0, double y0, double x1, double y1, double width, std::uint32_t rgb);
   [[nodiscard]] double text_width(const std::string& text, double size);
-  /// `align` 0: x is the text's left end, 0.5 its middle, 1 its right end. y is the baseline. UTF-8.
+  /// Draws UTF-8 text with its baseline at y. x is the left end of the text if `align` is 0, its middle for 0.5, and
+  /// its right end for 1.
   void text(double x, double y, const std::string& text, double size, double align = 0, std::uint32_t rgb = 0x222222);
-  /// Rotated to run upwards, with its middle at (x, y).
+  /// Draws text that runs upwards, with its middle at (x, y).
   void upward_text(double x, double y, const std::string& label, double size);
 
  private:
@@ -35,8 +36,8 @@ class Canvas {
 /// Throws Error(bad_input) unless the name ends in .svg or .png.
 void check_figure_path(const std::filesystem::path& file);
 
-/// Writes a drawing of this size in points, as .svg or as .png with two pixels per point. The file appears by rename.
-/// Throws as check_figure_path, as AtomicFile, or Error(system_failure) if Cairo fails.
+/// Writes a drawing of this size (in points) as .svg, or as .png with two pixels per point. The file appears by rename.
+/// Throws the errors of check_figure_path() and of AtomicFile, and Error(system_failure) if Cairo fails.
 void write_drawing(double width, double height, const std::filesystem::path& file,
                    const std::function<void(Canvas&)>& draw);
 

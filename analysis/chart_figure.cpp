@@ -13,10 +13,11 @@
 namespace tessera::analysis {
 namespace {
 
-// Okabe, Ito, "Color Universal Design", 2008, and two greys; further families reuse the colours with another mark.
+// The colours of Okabe, Ito, "Color Universal Design", 2008, and two greys. Further families use the same colours with
+// another mark.
 constexpr std::array<std::uint32_t, 8> colors = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7,
                                                  0xe69f00, 0x56b4e9, 0x7f7f7f, 0x222222};
-constexpr double least_error = 1e-9;  // an error of 0 is drawn here
+constexpr double least_error = 1e-9;  // place of errors of 0, and the smallest error drawn
 
 std::uint32_t paler(std::uint32_t rgb) {
   std::uint32_t result = 0;
@@ -99,7 +100,7 @@ class Chart {
     canvas.upward_text(18, (top + floor) / 2, "largest error in linear RGBA", 11);
   }
 
-  /// Drawn as steps: no method below and to the left of the line has been measured.
+  /// Draws the Pareto front as steps. No measured method is below and to the left of this line.
   void front(Canvas& canvas) const {
     std::vector<const ChartPoint*> best;
     for (const ChartPoint* p : points_)
@@ -138,7 +139,8 @@ class Chart {
     for (const ChartPoint* p : mine) mark(canvas, x(p->median_ms()), y(error(*p)), number, p->on_front);
   }
 
-  /// Labels each point with its difference from its family, if there is space; the points of the front first.
+  /// Labels each point with the part of its name that differs from the family's, if there is space. Points of the front
+  /// are labelled first.
   void labels(Canvas& canvas) const {
     struct Taken {
       double x0, y0, x1, y1;
@@ -156,7 +158,8 @@ class Chart {
           return place.x0 < t.x1 && t.x0 < place.x1 && place.y0 < t.y1 && t.y0 < place.y1;
         });
         if (!free || place.x0 < left || place.x1 > width) continue;
-        canvas.rectangle(place.x0 - 1, place.y0 + 1, wide + 2, size + 1, 0xffffff);  // so that no lines cross the text
+        canvas.rectangle(place.x0 - 1, place.y0 + 1, wide + 2, size + 1, 0xffffff);  // covers lines that would cross
+                                                                                     // the text
         canvas.text(place.x0, at_y + dy, words, size, 0, bold ? 0x222222 : 0x888888);
         taken.push_back(place);
         return;
@@ -187,7 +190,7 @@ class Chart {
   std::string title_, subtitle_;
   std::vector<const ChartPoint*> points_;
   std::vector<std::string> families_;
-  double x_low_, x_high_, y_low_, y_high_;  ///< exponents of ten
+  double x_low_, x_high_, y_low_, y_high_;  ///< ends of the axes, as exponents of ten
 };
 
 }  // namespace

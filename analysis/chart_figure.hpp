@@ -9,9 +9,10 @@
 
 namespace tessera::analysis {
 
-/// Time against error, both logarithmic: one point per method, the spread of its times as a bar, a line through each
-/// family, and the Pareto front as steps; methods behind the front are pale. Written as .svg or .png by the file's
-/// name; appears by rename. Throws as write_figure() of timing_figure.hpp.
+/// Writes a chart of time against error, both logarithmic: a point for each method, with a bar for the spread of its
+/// times, a line through each family, and the Pareto front as steps. Methods behind the front are pale. The file is
+/// .svg or .png, depending on its name, and appears by rename. Throws the same errors as write_figure() of
+/// timing_figure.hpp.
 void write_chart(std::span<const ChartPoint> points, const std::string& title, const std::string& subtitle,
                  const std::filesystem::path& file);
 

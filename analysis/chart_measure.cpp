@@ -32,7 +32,7 @@ ChartError chart_error(const Image& image, std::span<const PixelIndex> pixels, s
       squares += difference * difference;
     }
     largest.push_back(most);
-    // Encoding and decoding cancel; only the display's clamp remains.
+    // Encoding to sRGB and decoding cancel each other; only the clamp of the display remains.
     const auto seen = [](double r, double g, double b) {
       return lab_of_linear(glm::clamp(glm::dvec3(r, g, b), 0.0, 1.0));
     };

@@ -41,7 +41,7 @@ class MeshMethods final : public MethodList {
                           const Integrator& integrator) {
     const bool planes = rasterizer == Rasterizer::planes;
     const char* const prefix = planes ? "planes" : "scanline";
-    // Methods that cannot use the lattice take about three times as long (docs/ACCURACY.md), and longer with more
+    // Methods that cannot use the lattice take about three times as long (docs/ACCURACY.md), and even longer with more
     // samples.
     const bool fast =
         planes && (integrator.kind == IntegratorKind::automatic || integrator.kind == IntegratorKind::exact);
@@ -74,7 +74,7 @@ class MeshMethods final : public MethodList {
     method.ranks = 2;
     method.settings.threads = 1;
     method.settings.ranks.exchange = exchange;
-    method.settings.ranks.partition.kind = PartitionKind::random;  // the worst case
+    method.settings.ranks.partition.kind = PartitionKind::random;  // the worst case for exchanging runs
   }
   void device(GlMethod gl, bool half, const Integrator& integrator) {
     const bool compute = gl == GlMethod::compute;
@@ -87,7 +87,7 @@ class MeshMethods final : public MethodList {
     method.settings.mesh.device.method = gl;
     method.settings.mesh.device.half = half;
   }
-  /// As `render --preset`, in one process.
+  /// Adds the method of `render --preset juliachs-2007`, in one process.
   void juliachs_2007() {
     ChartMethod& method = rasterized(Rasterizer::scanline, "juliachs-2007", "juliachs-2007",
                                      {.kind = IntegratorKind::sampled, .samples = 4});
@@ -158,7 +158,7 @@ std::vector<ChartMethod> grid_methods(const ChartScene& scene) {
 ChartRenderer::ChartRenderer(const ChartScene& scene, const ChartMethod& method) : scene_(scene), method_(method) {
   if (method.ranks > 1) return;
   session_.emplace(scene.data, method.settings);
-  // Builds the tables of the transfer function, which a mesh's session keeps.
+  // The first frame builds the tables of the transfer function, which the session of a mesh keeps.
   if (scene.data.is_mesh() && method.settings.mesh.device.backends.empty())
     session_->render({scene.view.camera, {1, 1}}, scene.function);
 }

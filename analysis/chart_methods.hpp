@@ -14,7 +14,8 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-/// The methods that `tessera chart` measures. A new one is an additional entry in the lists of chart_methods.cpp.
+/// The methods that `tessera chart` measures. A new method requires an additional entry in the lists of
+/// chart_methods.cpp.
 namespace tessera::analysis {
 
 /// The scene that all methods render.
@@ -28,34 +29,36 @@ struct ChartScene {
 };
 
 struct ChartMethod {
-  std::string family;  ///< one curve of the chart: "planes, sampled"
+  std::string family;  ///< name of the method's curve in the chart: "planes, sampled"
   std::string name;    ///< "planes sampled:4"
   Settings settings;
   int ranks = 1;         ///< more than one: threads of this process that communicate like processes
-  double cost = 1;       ///< its time relative to the first method's, roughly: decides whether it is tried
-  std::string preset;    ///< of `render`, if a preset is the whole method
-  std::string left_out;  ///< why it is not available here; empty if it is
+  double cost = 1;       ///< approximate time relative to that of the first method; determines whether the method is
+                         ///< tried
+  std::string preset;    ///< preset of `render`, if it specifies the whole method
+  std::string left_out;  ///< reason why the method is not available here; empty if it is available
 
-  /// Whether to recommend it: not if it needs several ranks, or switches optimizations off.
+  /// Whether the method may be recommended: not if it needs several ranks or switches optimizations off.
   [[nodiscard]] bool recommended() const {
     return ranks == 1 && settings.use == Mechanisms() && settings.integrator.terminates;
   }
 };
 
-/// A method ready to be timed: everything that depends only on the data or the transfer function is prepared.
+/// A method that is ready to be timed: everything that depends only on the data or the transfer function has been
+/// prepared.
 class ChartRenderer {
  public:
   ChartRenderer(const ChartScene& scene, const ChartMethod& method);
-  /// One frame, and the milliseconds it took.
+  /// Renders a frame. Returns the image and the time in milliseconds.
   std::pair<Image, double> frame();
 
  private:
   const ChartScene& scene_;
   const ChartMethod& method_;
-  std::optional<Session> session_;  ///< for one rank
+  std::optional<Session> session_;  ///< used if there is one rank
 };
 
-/// The most informative methods first, so that a short budget only omits refinements.
+/// Returns the methods, the most informative ones first, so that a short budget omits only refinements.
 std::vector<ChartMethod> chart_methods(const ChartScene& scene);
 
 }  // namespace tessera::analysis

@@ -14,8 +14,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Estimates a method's time before it is tried: from the last one of its family, otherwise from the last one of the
-/// first family.
+/// Estimates a method's time before it is tried, from the last method of its family or, if there is none, from the last
+/// method of the first family.
 class CostGuess {
  public:
   [[nodiscard]] double seconds(const ChartMethod& method) const {
@@ -29,7 +29,7 @@ class CostGuess {
   }
 
  private:
-  std::map<std::string, double> families_;  ///< preparation and one frame, over `cost`
+  std::map<std::string, double> families_;  ///< for each family: time of preparation and one frame, divided by `cost`
   std::string first_;
 };
 
@@ -52,8 +52,8 @@ ChartTruth chart_truth(const ChartScene& scene, double seconds, std::optional<st
   if (asked) {
     look(*asked);
   } else {
-    // Larger and larger pilots until one measures the cost per pixel; passes over the mesh make a few pixels as
-    // expensive as many.
+    // Pilots of increasing size are rendered until one is large enough to measure the cost per pixel. Because of passes
+    // over the whole mesh, a few pixels take as long as many.
     std::size_t count = std::min<std::size_t>(total, 256);
     for (;;) {
       const double took = look(count);

@@ -22,25 +22,27 @@ struct ChartTruth {
   double seconds = 0;
 };
 
-/// `pixels` random pixels; or as many as fit into `seconds`, found by larger and larger pilots.
+/// Computes the reference for `pixels` random pixels or, without a number, for as many as `seconds` allow, which pilots
+/// of increasing size determine.
 ChartTruth chart_truth(const ChartScene& scene, double seconds, std::optional<std::size_t> pixels);
 
 struct ChartBudget {
   std::chrono::steady_clock::time_point begin;
-  double seconds;  ///< counted from `begin`
-  int repeat;      ///< frames per method, if they fit
+  double seconds;  ///< budget, counted from `begin`
+  int repeat;      ///< number of frames per method, if the budget allows
 };
 
-/// ChartPoint::left_out of a method that did not fit into the budget.
+/// ChartPoint::left_out of a method for which the budget was too small.
 inline constexpr const char* no_room = "no room in the budget";
 
 struct ChartSweep {
-  std::vector<ChartPoint> points;  ///< one per method, in their order; `options` is left empty
-  double missing_seconds = 0;      ///< estimated time of one frame each of the methods that did not fit
+  std::vector<ChartPoint> points;  ///< one for each method, in the order of the methods; `options` is not set
+  double missing_seconds = 0;      ///< estimated time for one frame of each method that was left out for lack of time
 };
 
-/// Times and compares all available methods. The first is always measured, others if the estimate from their family, or
-/// a rough guess, fits. `measured` is called for each measured method. An Error of a method becomes its left_out.
+/// Times and compares all available methods. The first method is always measured. Another method is measured if its
+/// time, estimated from its family or by a rough guess, is within the budget. `measured` is called for each measured
+/// method. If a method throws an Error, its text becomes left_out.
 ChartSweep sweep(const ChartScene& scene, const std::vector<ChartMethod>& methods, const ChartTruth& truth,
                  const ChartBudget& budget, const std::function<void(const ChartPoint&)>& measured);
 

@@ -11,7 +11,7 @@ constexpr double radian = std::numbers::pi / 180;
 
 double lab_curve(double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; }
 
-/// In [0, 360); 0 for grey.
+/// Hue angle in [0, 360) degrees; 0 for grey.
 double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double h = std::atan2(b, a) / radian;
@@ -21,7 +21,7 @@ double hue(double a, double b) {
 }  // namespace
 
 glm::dvec3 lab_of_linear(const glm::dvec3& c) {
-  // IEC 61966-2-1; dividing by each row's sum makes white (1, 1, 1) exactly.
+  // Matrix of IEC 61966-2-1. Division by the sum of each row makes white exactly (1, 1, 1).
   const double x = (0.4124 * c.x + 0.3576 * c.y + 0.1805 * c.z) / 0.9505;
   const double y = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
   const double z = (0.0193 * c.x + 0.1192 * c.y + 0.9505 * c.z) / 1.089;

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const glm::dvec3& v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // -0 is 0
+Json vector_json(const glm::dvec3& v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // adding 0 makes -0 a 0
 
 Json fields_json(const Description& data) {
   Json fields = Json::array();
@@ -70,7 +70,7 @@ Json grid_counters_json(const FrameStatistics& statistics) {
   return json;
 }
 
-/// Adds counters by group, without empty groups.
+/// Adds the counters by group, without empty groups.
 void add_counters_of(const MeshCounts& counts, Json& json) {
   const auto group_of = [](const MeshCounter& counter) { return counter.name.substr(0, counter.name.find('/')); };
   for (const MeshCounter& counter : mesh_counters) {
@@ -88,7 +88,9 @@ Json higher_order_json(const Description& data) {
     json[std::string(counter.name)] = data.higher_order.*counter.member;
   for (const HigherOrderBound& bound : higher_order_bounds)
     json[std::string(bound.name)] = data.higher_order.*bound.member;
-  if (data.higher_order_pixels > 0) json["pixel_error"] = data.higher_order_pixels;  // null: no bound
+  if (data.higher_order_pixels > 0)
+    json["pixel_error"] = data.higher_order_pixels;  // infinity becomes null: there is
+                                                     // no bound
   return json;
 }
 

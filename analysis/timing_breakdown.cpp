@@ -61,7 +61,7 @@ std::vector<Process> processes_of(const TraceFile& trace) {
   return processes;
 }
 
-/// Mean and worst values of one stage over processes.
+/// Computes the mean and the worst values of a stage over processes.
 class Merge {
  public:
   Merge(std::string stage, std::size_t processes) : processes_(static_cast<double>(processes)) {
@@ -139,7 +139,7 @@ RoleTime role_time(const TraceFile& trace, TraceRole role, std::span<const Proce
       outside.add(process.rank, process.time.outside[stage]);
     }
     if (!inside.empty()) time.stages.push_back(inside.result(time.whole.average_us));
-    // Less than a microsecond is due to rounding of times in the file.
+    // Times of less than a microsecond are due to the rounding of times in the file.
     if (!outside.empty() && outside.result().worst_us >= 1) time.outside.push_back(outside.result());
   }
   time.stages.push_back(other.result(time.whole.average_us));
@@ -150,7 +150,7 @@ RoleTime role_time(const TraceFile& trace, TraceRole role, std::span<const Proce
 struct FrameExtent {
   double begin = std::numeric_limits<double>::infinity();
   double end = -std::numeric_limits<double>::infinity();
-  double last_work = -std::numeric_limits<double>::infinity();  ///< other than exchange and waiting
+  double last_work = -std::numeric_limits<double>::infinity();  ///< end of the last work except exchange and waiting
 };
 
 Overlap overlap_of(const TraceFile& trace) {
@@ -170,13 +170,13 @@ Overlap overlap_of(const TraceFile& trace) {
   }
 
   Overlap overlap;
-  std::array<double, 2> bytes{}, before_work{}, before_end{};  // sent, received
+  std::array<double, 2> bytes{}, before_work{}, before_end{};  // index 0: sent, 1: received
   for (const FileSpan& span : trace.spans) {
     const bool sent = span.stage == send && span.role == TraceRole::projector;
     const bool received = span.stage == receive && span.role == TraceRole::compositor;
     const auto extent = projected.find(span.frame);
     if (!(sent || received) || extent == projected.end()) continue;
-    // Bytes are assumed to move evenly during their span.
+    // Bytes are assumed to move at a constant rate during their span.
     const auto before = [&](double time) {
       if (time >= span.start_us + span.wall_us) return 1.0;
       return span.wall_us > 0 ? std::clamp((time - span.start_us) / span.wall_us, 0.0, 1.0) : 0.0;

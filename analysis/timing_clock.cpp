@@ -7,14 +7,14 @@
 namespace tessera::analysis {
 namespace {
 
-/// An interval of one thread's time that belongs to one span only.
+/// An interval of one thread's time that belongs to a single span.
 struct Piece {
   double begin, end;
   std::uint16_t stage;
 };
 
-/// Cuts one thread's spans (sorted: earlier first, longer first) into pieces, each belonging to the innermost span;
-/// subtracts from `self_cpu` of each span the CPU time of the spans inside it.
+/// Cuts the spans of one thread into pieces, each of which belongs to the innermost span. The spans are sorted: earlier
+/// spans first, then longer spans first. Subtracts the CPU time of the spans inside a span from its `self_cpu`.
 void cut(std::span<const FileSpan> spans, std::vector<Piece>& pieces, std::span<double> self_cpu) {
   std::vector<std::size_t> open;
   double now = 0;
@@ -51,7 +51,7 @@ class Sweep {
   void run(const std::vector<Piece>& pieces) {
     struct Change {
       double time;
-      int stage;  ///< -1: the frames begin or end
+      int stage;  ///< -1: a frame begins or ends
       int by;
     };
     std::vector<Change> changes;
@@ -99,8 +99,8 @@ class Sweep {
   }
 
   ProcessTime* result_;
-  std::vector<int> running_;         ///< threads currently in each stage
-  std::vector<std::size_t> active_;  ///< stages with any thread
+  std::vector<int> running_;         ///< number of threads currently in each stage
+  std::vector<std::size_t> active_;  ///< stages that contain a thread
   int wait_, working_ = 0, in_frame_ = 0;
 };
 
@@ -163,7 +163,7 @@ ProcessTime share_clock(std::span<const FileSpan> spans, std::size_t stage_count
   }
   Sweep(result, stage_count, wait).run(pieces);
 
-  // Quantities without extent in time are attributed at the middle of their span.
+  // Quantities without an extent in time are attributed to the middle of their span.
   for (std::size_t i = 0; i < work.size(); ++i) {
     const bool framed = result.frames.contains(work[i].start_us + work[i].wall_us / 2);
     ProcessStage& stage = (framed ? result.in_frames : result.outside)[work[i].stage];

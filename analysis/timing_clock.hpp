@@ -15,29 +15,30 @@ struct TimeRanges {
   };
   std::vector<Range> ranges;
 
-  /// Joins intervals that touch or overlap.
+  /// Makes ranges from any intervals; intervals that touch or overlap are joined.
   static TimeRanges of(std::vector<Range> any);
   [[nodiscard]] double length() const;
   [[nodiscard]] bool contains(double time) const;
 };
 
-/// The work of one process in one role, or in one part of its time; timing_breakdown.hpp describes the counting.
+/// The work of one process in a stage, in one role or one part of its time. timing_breakdown.hpp describes how it is
+/// counted.
 struct ProcessStage {
   double wall_us = 0, cpu_us = 0, thread_us = 0;
   std::uint64_t bytes = 0, messages = 0;
 };
 
 struct ProcessTime {
-  std::vector<ProcessStage> in_frames, outside;  ///< one per stage of the trace
+  std::vector<ProcessStage> in_frames, outside;  ///< one element for each stage of the trace
   TimeRanges frames;                             ///< when the process worked on frames
-  double other_us = 0;                           ///< in frames, but in no stage
-  double busy_us = 0;                            ///< in frames: threads in stages other than `wait`, summed
-  int frame_count = 0;  ///< number of `frame` spans; 0: the frames are the time of all its spans
+  double other_us = 0;                           ///< time in frames, but in no stage
+  double busy_us = 0;                            ///< time in frames, summed over threads in stages other than `wait`
+  int frame_count = 0;                           ///< number of `frame` spans; if 0, `frames` is the time of all spans
 };
 
-/// Divides the clock of one process in one role among its stages. `spans` are all of its spans, in any order; `frame`
-/// and `wait` are the indices of these stages, or -1 if the trace has none. Spans that do not nest (only edited traces
-/// have any) are treated as if the later one interrupted the earlier.
+/// Divides the clock time of one process in one role among the stages. `spans` contains all spans of the process in
+/// this role, in any order. `frame` and `wait` are the indices of these stages, or -1 if the trace does not have them.
+/// If spans do not nest, which only occurs in edited traces, the later span is assumed to interrupt the earlier one.
 ProcessTime share_clock(std::span<const FileSpan> spans, std::size_t stage_count, int frame, int wait);
 
 }  // namespace tessera::analysis

@@ -18,7 +18,7 @@
 namespace tessera::analysis {
 namespace {
 
-/// The stages of one colour in a bar, from the bottom up. Stages without a kind belong to the last.
+/// The stages that share a colour in a bar, from the bottom up. Stages without a kind belong to the last kind.
 struct Kind {
   std::string_view label;
   std::uint32_t rgb;
@@ -37,7 +37,7 @@ constexpr std::array<Kind, 10> kinds = {{
     {"other", 0xd9d9d9, {}},
 }};
 
-using Bar = std::array<double, kinds.size()>;  ///< time per frame
+using Bar = std::array<double, kinds.size()>;  ///< time per frame of each kind
 
 Bar bar_of(const RoleTime& role, double frames) {
   Bar bar{};
@@ -50,7 +50,7 @@ Bar bar_of(const RoleTime& role, double frames) {
   return bar;
 }
 
-/// The first of 1, 2, 5, 10, 20, ... that divides `range` into at most eight.
+/// The first of 1, 2, 5, 10, 20, ... that divides `range` into at most eight parts.
 double tick_step(double range) {
   double step = std::pow(10, std::floor(std::log10(range / 8)));
   for (const double factor : {2.0, 2.5, 2.0})
@@ -118,7 +118,7 @@ class Figure {
   static constexpr double left = 62, above = 40, below = 72, gap = 28, plot_height = 320, legend_width = 150;
 
   [[nodiscard]] double pitch() const { return std::clamp(420.0 / static_cast<double>(runs_.size()), 56.0, 84.0); }
-  /// Wide enough for the title below it.
+  /// Width of a panel, which is sufficient for the title below the panel.
   [[nodiscard]] double panel_width(const Panel& panel) const {
     return std::max(190.0, pitch() * static_cast<double>(panel.runs.size()) + 16);
   }
@@ -152,7 +152,7 @@ class Figure {
   }
 
   [[nodiscard]] std::string file_words(Canvas& canvas, const RunTime& run) const {
-    // Cairo refuses text that is not UTF-8.
+    // Cairo reports an error for text that is not UTF-8.
     std::string stem = printable_ascii(std::filesystem::path(run.name).stem().string());
     while (stem.size() > 1 && canvas.text_width(stem, 8.5) > pitch() - 3) stem.pop_back();
     return stem;
@@ -176,7 +176,7 @@ class Figure {
       }
       from += bar[k];
     }
-    // The worst process, if it differs by more than the line's width.
+    // A line for the worst process, if its time differs by more than the width of the line.
     const double worst = y(role.whole.worst_us / frames);
     if (role.processes > 1 && y(from) - worst > 1) {
       canvas.line(middle, y(from), middle, worst, 1, 0x222222);
@@ -206,7 +206,7 @@ class Figure {
   std::array<bool, kinds.size()> used_{};
   double unit_, step_, top_;
   const char* unit_name_;
-  bool name_files_ = false;  ///< if the numbers of processes do not distinguish the runs
+  bool name_files_ = false;  ///< whether files are named, because the numbers of processes do not distinguish the runs
 };
 
 }  // namespace

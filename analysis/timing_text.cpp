@@ -83,7 +83,7 @@ std::string role_table(const RunTime& run, const RoleTime& role) {
   line(role.whole);
   const char* separator = "  outside of the frames, in all: ";
   for (const StageTime& stage : role.outside) {
-    if (stage.worst_us < 500) continue;  // would be printed as 0.000
+    if (stage.worst_us < 500) continue;  // the time would be printed as 0.000
     text += fmt::format("{}{} {:.3f} s", std::exchange(separator, ", "), stage.stage, stage.average_us * 1e-6);
     if (several) text += fmt::format(" (worst {:.3f} s, rank {})", stage.worst_us * 1e-6, stage.worst_rank);
   }
