@@ -102,8 +102,8 @@ class LabelTallies {
 
   std::unordered_map<double, LabelTally> values_;
   double steps_ = 0;
-  std::uint64_t steps_counted_ = 0, unequal_ = 0;  ///< number of compared neighbours, and of those with different
-                                                   ///< values, along i in the slice
+  std::uint64_t steps_counted_ = 0, unequal_ = 0;  ///< number of differences in `steps_`; number of unequal neighbours
+                                                   ///< along i
 };
 
 /// Adds a slice of samples. Returns false if the values cannot be labels.
