@@ -24,14 +24,14 @@ void add_arrow(Sketch& sketch, const glm::dvec2& from, const glm::dvec2& along, 
   const double size = sketch.typeface.size(), width = 1.5 * sketch.line_width();
   const double length = glm::length(along);
   const double head = std::min(0.55 * size, length);
-  if (length < 1) return;  // seen along its axis
+  if (length < 1) return;  // the line is seen along its direction
   const glm::dvec2 unit = along / length, across(-unit.y, unit.x), tip = from + along;
   marks.emplace_back(Stroke{{from, tip - unit * (0.9 * head)}, width, pen});
   marks.emplace_back(
       Shape{{tip, tip - unit * head + across * (0.45 * head), tip - unit * head - across * (0.45 * head)}, pen});
 }
 
-/// Corners of a label's box, and of the boxes already placed.
+/// Corners of the box of a label.
 struct Box2 {
   glm::dvec2 low, high;
   [[nodiscard]] bool meets(const Box2& other) const {
@@ -39,7 +39,8 @@ struct Box2 {
   }
 };
 
-/// The scale along one axis of the data's box, drawn at one of its four edges in that direction.
+/// The scale along one axis of the data's box. It is drawn at one of the four edges of the box in the direction of the
+/// axis.
 class EdgeAxis {
  public:
   EdgeAxis(Sketch& sketch, const Box& box, int axis, std::vector<Box2>& taken)
@@ -67,14 +68,14 @@ class EdgeAxis {
     const glm::dvec2 middle = (line_[0] + line_[1]) * 0.5;
     const double beyond = tick + 0.9 * size + std::abs(outward_.x) * widest + std::abs(outward_.y) * size;
     const auto axis = static_cast<std::size_t>(axis_);
-    // A title takes precedence over labels in its way; it moves further out.
+    // If a title would overlap labels, it is moved further outwards.
     for (int further = 0; further < 4; ++further)
       if (put(middle + outward_ * (beyond + further * size), sketch_.with_unit(axis_names[axis]), pen)) break;
   }
 
  private:
-  /// Chooses the edge at the silhouette of the box, low and to the left if there are several; if the eye is in the box,
-  /// the longest edge on the image. False if none is visible.
+  /// Chooses the edge at the silhouette of the box. If there are several, the one that is lowest and then furthest left
+  /// is chosen; if the eye is in the box, it is the longest edge on the image. Returns false if no edge is visible.
   bool choose() {
     const double margin = 0;
     double best = -std::numeric_limits<double>::infinity();
@@ -93,7 +94,7 @@ class EdgeAxis {
       if (glm::dot(outward, middle - inside) < 0) outward = -outward;
       const double side = sketch_.layout.width() + sketch_.layout.height();
       const bool at_border = faces_towards_eye(sketch_.screen, box_, edge) == 1;
-      // Low, then left; edges at the silhouette before any others.
+      // Lower edges are preferred, then edges further left. Edges at the silhouette are preferred to all others.
       const double score =
           (at_border ? 10 : 0) + length / side + (outward.y - 0.7 * outward.x) + 0.1 * (middle.y - middle.x) / side;
       if (score <= best) continue;
@@ -102,7 +103,7 @@ class EdgeAxis {
     return std::isfinite(best);
   }
 
-  /// The position of a value on the edge's line; none if it is outside the image.
+  /// Returns the position of a value on the line of the edge; none if it is outside the image.
   [[nodiscard]] std::optional<glm::dvec2> place_of(double value) const {
     glm::dvec3 world = corner(box_, edge_.corner);
     world[axis_] = value;
@@ -112,7 +113,8 @@ class EdgeAxis {
     return at;
   }
 
-  /// Puts a label that begins at `from` and extends outward, shifted into the image; false if it would overlap another.
+  /// Adds a label that begins at `from` and extends outwards, shifted into the image. Returns false if it would overlap
+  /// another label.
   bool put(const glm::dvec2& from, const std::string& text, Pen pen) {
     const Typeface& face = sketch_.typeface;
     const glm::dvec2 half(face.width(text) / 2, 0.5 * face.size());
@@ -149,12 +151,12 @@ void add_triad(Sketch& sketch, Place place) {
   const ViewBasis& basis = sketch.screen.basis();
   std::array<int, 3> order{0, 1, 2};
   std::ranges::stable_sort(order, [&](int a, int b) { return basis.forward[a] > basis.forward[b]; });
-  for (const int axis : order) {  // farthest first
+  for (const int axis : order) {  // the farthest axis is drawn first
     const Pen pen = axis_pens[static_cast<std::size_t>(axis)];
     const glm::dvec2 along(basis.right[axis], -basis.up[axis]);
     add_arrow(sketch, middle, along * arm, pen);
     const double length = glm::length(along);
-    // For an axis seen along its direction, the letter is next to the middle.
+    // The letter of an axis that is seen along its direction is next to the middle.
     const glm::dvec2 at =
         length > 0.15 ? along * arm + along / length * (0.7 * face.size()) : glm::dvec2(-0.6, 0.6) * face.size();
     sketch.sheet.on_top.marks.emplace_back(centred(face, middle + at, axis_names[static_cast<std::size_t>(axis)], pen));

@@ -6,7 +6,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-// An annotation of nothing needs no Cairo.
+// An annotation without elements does not need Cairo.
 void validate(const Annotation& annotation, const TransferFunction&) {
   if (!annotation.color_bar && !annotation.axes && !annotation.outline && !annotation.scale_bar &&
       annotation.texts.empty())

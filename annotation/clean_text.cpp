@@ -8,8 +8,8 @@
 namespace tessera::annotation {
 namespace {
 
-/// Number of bytes of the UTF-8 sequence at the beginning of the text, 0 if there is none. RFC 3629: no overlong form,
-/// no surrogate, nothing above U+10FFFF.
+/// Number of bytes of the UTF-8 sequence at the beginning of the text; 0 if there is no valid sequence. As in RFC 3629,
+/// overlong forms, surrogates and values above U+10FFFF are invalid.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };

@@ -8,7 +8,7 @@
 namespace tessera::annotation {
 namespace {
 
-/// A colour bar's values along its length, from its low end at 0 to its high end at 1.
+/// Maps between values and places along a colour bar, from its low end at 0 to its high end at 1.
 struct Scale {
   double low, high;
   bool logarithmic;
@@ -17,11 +17,12 @@ struct Scale {
     if (!logarithmic) return std::lerp(low, high, t);
     return std::clamp(low * std::pow(high / low, t), low, high);
   }
-  /// In the middle if there is only one value.
+  /// Returns the place of a value. It is the middle if the range consists of one value.
   [[nodiscard]] double place(double value) const {
     if (low == high) return 0.5;
     const double t = logarithmic ? std::log(value / low) / std::log(high / low)
-                                 : (value / 2 - low / 2) / (high / 2 - low / 2);  // halves do not overflow
+                                 : (value / 2 - low / 2) / (high / 2 - low / 2);  // numbers are halved so that
+                                                                                  // differences do not overflow
     return std::clamp(t, 0.0, 1.0);
   }
   [[nodiscard]] std::vector<Tick> ticks(int most) const {
@@ -29,12 +30,12 @@ struct Scale {
   }
 };
 
-/// The bar's position in whole pixels, and its `steps` pixels, counted from the low end.
+/// The rectangle of the bar, in whole pixels. The bar has `steps` pixels along its length, counted from the low end.
 struct Bar {
   int x, y, width, height;
   bool upright;
   [[nodiscard]] int steps() const { return upright ? height : width; }
-  /// The pixel coordinate at fraction t of the bar.
+  /// Returns the pixel coordinate along the bar at the fraction t of its length.
   [[nodiscard]] double at(double t) const { return upright ? y + height * (1 - t) : x + width * t; }
 };
 
@@ -50,8 +51,8 @@ void add_colors(Sketch& sketch, const Bar& bar, const Scale& scale, const Transf
   sketch.sheet.on_top.swatches.push_back(std::move(swatch));
 }
 
-/// Extinction over the range, scaled so that its largest value has height `depth`: to the left of an upright bar, above
-/// a horizontal one.
+/// Adds the graph of the extinction over the range, scaled so that the largest value has the height `depth`. The graph
+/// is to the left of an upright bar and above a horizontal bar.
 void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const TransferFunction& function, double depth) {
   std::vector<double> extinction;
   extinction.reserve(static_cast<std::size_t>(bar.steps()));
@@ -70,7 +71,7 @@ void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const Transfe
   graph.corners.push_back(corner(bar.at(0), before));
   for (int i = 0; i < bar.steps(); ++i) {
     const double height = extinction[static_cast<std::size_t>(i)] / largest * depth;
-    // A change of more than a pixel within one pixel is a step, drawn vertically.
+    // A change of more than a pixel between adjacent pixels is a step, which is drawn vertically.
     if (std::abs(height - before) > 1) {
       graph.corners.push_back(corner(bar.at(i / steps), before));
       graph.corners.push_back(corner(bar.at(i / steps), height));
@@ -87,7 +88,7 @@ void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const Transfe
   marks.emplace_back(std::move(line));
 }
 
-/// A frame around the bar, just outside its colours.
+/// Adds a frame around the bar, just outside its colours.
 void add_frame(Sketch& sketch, const Bar& bar) {
   const double w = sketch.line_width(), half = w / 2;
   const double left = bar.x - half, right = bar.x + bar.width + half;
@@ -105,11 +106,11 @@ double widest(const Typeface& face, const std::vector<Tick>& ticks) {
   return width;
 }
 
-/// Labels upright bars on the right.
+/// Adds an upright bar, with its labels on the right.
 void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& function, const Scale& scale) {
   const Typeface& face = sketch.typeface;
   const double size = face.size(), margin = sketch.layout.margin(), w = sketch.line_width();
-  // Leaves space for a line of text in the corners, and for the title.
+  // The length leaves space for a line of text in the corners, and for the title.
   const double length = std::floor(
       std::min(0.6 * sketch.layout.height(), sketch.layout.height() - 2 * (margin + 1.5 * face.line()) - face.line()));
   if (length < 2 * size) return;
@@ -139,7 +140,7 @@ void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& fu
   marks.emplace_back(Label{{corner->x + (right ? width - face.width(title) : 0), corner->y + face.ascent()}, title});
 }
 
-/// As many ticks as have space for their labels side by side.
+/// Returns as many ticks as there is space for labels next to each other.
 std::vector<Tick> level_ticks(const Sketch& sketch, const Scale& scale, double length) {
   std::vector<Tick> ticks;
   for (int most = 10; most >= 2; --most) {
@@ -152,7 +153,7 @@ std::vector<Tick> level_ticks(const Sketch& sketch, const Scale& scale, double l
   return ticks;
 }
 
-/// Labels horizontal bars below, with their title above.
+/// Adds a horizontal bar, with its labels below and its title above.
 void add_level(Sketch& sketch, const ColorBar& bar, const TransferFunction& function, const Scale& scale) {
   const Typeface& face = sketch.typeface;
   const double size = face.size(), w = sketch.line_width();

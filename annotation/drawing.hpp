@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-/// A drawing as values, before it becomes pixels: drawn in order, later parts over earlier ones, all halos below all
-/// ink. Lengths are in pixels from the image's top left corner, y downwards.
+/// A drawing as values, before it is rendered to pixels. Later parts are drawn over earlier parts, and all halos below
+/// all ink. Lengths are in pixels from the image's top left corner, with y downwards.
 namespace tessera::annotation {
 
 /// Colours of lines and text; ink.hpp defines them.
@@ -35,7 +35,7 @@ struct Shape {
   double opacity = 1;
 };
 
-/// Whole pixels in given colours, opaque, row by row.
+/// A rectangle of opaque pixels in given colours, row by row.
 struct Swatch {
   int x, y, width, height;
   std::vector<glm::dvec3> colors;
@@ -43,13 +43,14 @@ struct Swatch {
 
 using Mark = std::variant<Stroke, Label, Shape>;
 
-/// One layer: swatches, and marks over them.
+/// One layer of an annotation: swatches, and marks over them.
 struct Drawing {
   std::vector<Swatch> swatches;
   std::vector<Mark> marks;
 };
 
-/// A whole annotation: parts behind the image's data, parts in front of them, and parts without a place in the world.
+/// A whole annotation: the parts behind the data of the image, the parts in front of them, and the parts without a
+/// position in the world.
 struct Sheet {
   Drawing behind, before, on_top;
 };

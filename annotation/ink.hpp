@@ -14,7 +14,7 @@ class Ink {
   explicit Ink(const AnnotationStyle& style);
 
   [[nodiscard]] glm::dvec3 color(Pen pen) const;
-  /// The colour that surrounds all ink, so that it can be read over anything.
+  /// The colour that surrounds all ink, so that text and lines are readable over any image.
   [[nodiscard]] glm::dvec3 halo() const { return halo_; }
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double halo_opacity = 0.8;
 
-/// Corners in pixels.
+/// Corners of a rectangle, in pixels.
 struct Bounds {
   double left = 1e300, top = 1e300, right = -1e300, bottom = -1e300;
   void add(const glm::dvec2& p, double by) {
@@ -42,7 +42,8 @@ struct Block {
   }
 };
 
-/// How far the halo extends beyond the ink: for text the width of a letter's stem, for lines less.
+/// Distance by which the halo extends beyond the ink. For text it is the width of a letter's stem; for lines it is
+/// smaller.
 double halo_width(const Mark& mark, const Typeface& typeface) {
   if (const auto* stroke = std::get_if<Stroke>(&mark)) return std::max(1.0, 0.75 * stroke->width);
   return std::max(1.0, 0.12 * typeface.size());
@@ -64,8 +65,9 @@ Bounds bounds_of(const Mark& mark, const Typeface& typeface) {
   return bounds;
 }
 
-/// One block of the image as Cairo's mask. Marks that share a colour are drawn into it together and then added to the
-/// layer, so that the layer's colours have the precision of floats; Cairo has 8 bits.
+/// A mask of Cairo for one block of the image. Marks that share a colour are drawn together into the mask, which is
+/// then added to the layer in this colour. The colours of the layer therefore have single precision, although Cairo has
+/// only 8 bits.
 class Mask {
  public:
   Mask(const Block& block, const Typeface& typeface) : block_(block) {
@@ -90,7 +92,7 @@ class Mask {
       return;
     }
     if (const auto* label = std::get_if<Label>(&mark)) {
-      // As outlines: these are positioned to a fraction of a pixel, and can be widened.
+      // Text is drawn as outlines, which can be positioned to a fraction of a pixel and widened.
       cairo_move_to(cairo, label->at.x, label->at.y);
       cairo_text_path(cairo, label->text.c_str());
     } else {
@@ -122,7 +124,7 @@ class Mask {
     for (int y = top; y < bottom; ++y) {
       unsigned char* row = pixels + y * stride;
       for (int x = left; x < right;) {
-        // Most of the mask is empty: skip eight pixels at once.
+        // Most of the mask is empty, so eight pixels are skipped at once.
         if (std::uint64_t eight = 0; x + 8 <= right && (std::memcpy(&eight, row + x, 8), eight == 0)) {
           x += 8;
           continue;
@@ -153,8 +155,8 @@ void paint(const Swatch& swatch, TiledLayer& layer) {
       if (x >= 0 && y >= 0 && x < layer.size().width && y < layer.size().height) layer.blend(x, y, swatch.colors[i], 1);
 }
 
-/// Calls `in_block` for each block of the image that meets one of the bounds, with a mask of the block. A mask of the
-/// whole would be as large as the image, and Cairo's images have at most 32767 pixels per side.
+/// Calls `in_block`, with a mask, for each block of the image that overlaps one of the bounds. A single mask would be
+/// as large as the image, and images of Cairo have at most 32767 pixels per side.
 template <class InBlock>
 void for_each_block(std::span<const Bounds> bounds, const Typeface& typeface, ImageSize size, const InBlock& in_block) {
   constexpr int side = 1024;

@@ -31,7 +31,7 @@ void add_scale_bar(Sketch& sketch, const ScaleBar& bar) {
   const double right = left + drawn, w = sketch.line_width();
   auto& marks = sketch.sheet.on_top.marks;
   marks.emplace_back(Label{{placed(text_width), corner->y + face.ascent()}, words});
-  // The length is measured between the middles of the two end lines.
+  // The length is the distance between the middles of the two end lines.
   marks.emplace_back(Stroke{{{left, y}, {right, y}}, w});
   marks.emplace_back(Stroke{{{left, y - serif}, {left, y + serif}}, w});
   marks.emplace_back(Stroke{{{right, y - serif}, {right, y + serif}}, w});

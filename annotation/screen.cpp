@@ -33,11 +33,11 @@ std::optional<glm::dvec2> Screen::pixel(const glm::dvec3& world) const {
 }
 
 std::optional<Segment> Screen::segment(const glm::dvec3& a, const glm::dvec3& b, double margin) const {
-  // The algorithm of Liang and Barsky, before the division by w: each bound is linear along the line.
+  // The algorithm of Liang and Barsky, applied before the division by w, where each bound is linear along the line.
   const Homogeneous p = homogeneous(a), q = homogeneous(b);
   const double least = 1e-12 * std::max(std::abs(p.depth), std::abs(q.depth));
   double from = 0, to = 1;
-  const auto keep = [&](double at_p, double at_q) {  // where the bound is positive
+  const auto keep = [&](double at_p, double at_q) {  // keeps the part of the line where the bound is positive
     if (at_p < 0 && at_q < 0) to = -1;
     if (at_p < 0 && at_q >= 0) from = std::max(from, at_p / (at_p - at_q));
     if (at_p >= 0 && at_q < 0) to = std::min(to, at_p / (at_p - at_q));
@@ -51,7 +51,7 @@ std::optional<Segment> Screen::segment(const glm::dvec3& a, const glm::dvec3& b,
   if (!(from <= to)) return std::nullopt;
   const auto at = [&](double t) {
     const double w = std::lerp(p.w, q.w, t);
-    // Rounding may leave a cut end slightly outside, and w at 0 if both ends are in the eye's plane.
+    // Because of rounding, a cut end may be slightly outside, and w may be 0 if both ends are in the plane of the eye.
     return glm::dvec2(std::clamp(std::lerp(p.x, q.x, t) / w, -margin, right),
                       std::clamp(std::lerp(p.y, q.y, t) / w, -margin, bottom));
   };

@@ -24,21 +24,23 @@ class Screen {
   [[nodiscard]] const View& view() const { return view_; }
   [[nodiscard]] const ViewBasis& basis() const { return basis_; }
 
-  /// None for points that are not in front of the eye, in either projection. May be outside the image.
+  /// Returns the place of a point, which may be outside the image. Returns none, in both projections, for a point that
+  /// is not in front of the eye.
   [[nodiscard]] std::optional<glm::dvec2> pixel(const glm::dvec3& world) const;
 
-  /// The part of a world line that is in front of the eye and on the image or within `margin` pixels of it; none if
-  /// there is no such part. Cut ends are at the margin, so that numbers stay small.
+  /// Returns the part of a world line that is in front of the eye and on the image or within `margin` pixels of it;
+  /// none if there is no such part. Lines are cut at the margin, so that coordinates remain small.
   [[nodiscard]] std::optional<Segment> segment(const glm::dvec3& a, const glm::dvec3& b, double margin) const;
 
-  /// Pixels per world unit across the view, at the focal point's depth; orthographic: anywhere.
+  /// Pixels per world unit across the view: in perspective at the depth of the focal point, in orthographic views
+  /// anywhere.
   [[nodiscard]] double pixels_per_unit() const;
 
-  /// Whether a side of the box, at the `high` or low end of an axis, faces the eye.
+  /// Whether the side of the box at the high end of the axis (if `high`) or at the low end faces the eye.
   [[nodiscard]] bool faces_eye(const Box& box, int axis, bool high) const;
 
  private:
-  /// Pixels times w. w is the depth (perspective) or 1.
+  /// Pixel coordinates multiplied by w, which is the depth in perspective views and otherwise 1.
   struct Homogeneous {
     double x, y, w, depth;
   };
@@ -46,21 +48,21 @@ class Screen {
 
   View view_;
   ViewBasis basis_;
-  double scale_;  ///< pixels per unit across the view, perspective: at depth 1
+  double scale_;  ///< pixels per world unit across the view; in perspective at depth 1
 };
 
-/// A corner of a box by three bits; a set bit means the high end of x, y, z.
+/// Returns the corner of a box given by three bits, for x, y and z. A set bit means the high end.
 glm::dvec3 corner(const Box& box, int bits);
 
-/// An edge of a box: the bits of the corner with the lower number, and the axis of its direction.
+/// An edge of a box: the bits of its corner with the lower number, and the axis of its direction.
 struct BoxEdge {
   int corner, axis;
 };
 
-/// All twelve, along x, then y, then z.
+/// Returns all twelve edges: first those along x, then y, then z.
 std::array<BoxEdge, 12> box_edges();
 
-/// How many of the two faces that meet at the edge face the eye.
+/// Returns how many of the two faces that share the edge face the eye.
 int faces_towards_eye(const Screen& screen, const Box& box, const BoxEdge& edge);
 
 }  // namespace tessera::annotation

@@ -66,7 +66,7 @@ std::string Sketch::with_unit(const std::string& name) const {
 
 void add_text(Sketch& sketch, const Text& text) {
   const Typeface& face = sketch.typeface;
-  // Lines at the bottom are stacked upwards, the last one lowest.
+  // Lines at the bottom are stacked upwards, so that the last line is the lowest.
   std::vector<std::string> lines;
   for (std::size_t at = 0; at <= text.text.size();) {
     const std::size_t end = std::min(text.text.find('\n', at), text.text.size());

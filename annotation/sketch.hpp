@@ -21,7 +21,8 @@ class Layout {
   [[nodiscard]] double margin() const { return margin_; }
   [[nodiscard]] double width() const { return size_.width; }
   [[nodiscard]] double height() const { return size_.height; }
-  /// Top left corner of the next rectangle of this size at a position; none if it would not be on the image.
+  /// Assigns the next rectangle of this size at a position. Returns its top left corner; none if the rectangle would
+  /// not be on the image.
   std::optional<glm::dvec2> take(Place place, double width, double height);
   /// Low and high corners of all assigned rectangles.
   [[nodiscard]] const std::vector<std::array<glm::dvec2, 2>>& taken() const { return taken_; }
@@ -29,11 +30,11 @@ class Layout {
  private:
   ImageSize size_;
   double margin_;
-  std::array<double, 8> used_{};  ///< by position: extent from the margin inwards
+  std::array<double, 8> used_{};  ///< for each position: extent of the assigned rectangles from the margin inwards
   std::vector<std::array<glm::dvec2, 2>> taken_;
 };
 
-/// -1, 0 or 1: left, middle, right; top, middle, bottom.
+/// Column and row of a position: -1 is left or top, 0 is the middle, 1 is right or bottom.
 int column_of(Place place);
 int row_of(Place place);
 
@@ -45,11 +46,12 @@ struct Sketch {
   Layout layout;
   Sheet sheet{};
 
-  /// Width of lines in pixels: whole, so that horizontal and vertical lines are sharp.
+  /// Width of lines in pixels. It is a whole number, so that horizontal and vertical lines are sharp.
   [[nodiscard]] double line_width() const;
-  /// The nearest position for the middle of a horizontal or vertical line at which it covers whole pixels.
+  /// Returns the position nearest to `at` for the middle of a horizontal or vertical line at which the line covers
+  /// whole pixels.
   [[nodiscard]] double crisp(double at) const;
-  /// `name`, with the world's unit in brackets if it is known.
+  /// Returns `name`, followed by the unit of the world in brackets if it is known.
   [[nodiscard]] std::string with_unit(const std::string& name) const;
 };
 
@@ -58,7 +60,8 @@ std::array<double, 2> range_of(const ColorBar& bar, const TransferFunction& func
 
 void add_color_bar(Sketch& sketch, const ColorBar& bar, const TransferFunction& function);
 void add_triad(Sketch& sketch, Place place);
-/// Call it last: its labels avoid what has been placed. `outlined`: the box's edges are already drawn.
+/// Must be called last, because its labels avoid the elements already placed. `outlined` states whether the edges of
+/// the box are already drawn.
 void add_box_axes(Sketch& sketch, const Box& box, bool outlined);
 void add_outline(Sketch& sketch, const Box& box);
 void add_scale_bar(Sketch& sketch, const ScaleBar& bar);

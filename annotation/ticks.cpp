@@ -9,14 +9,14 @@
 namespace tessera::annotation {
 namespace {
 
-/// m times ten to the e, with m of 1, 2, 5: a step between ticks.
+/// A step between ticks: `mantissa` (1, 2 or 5) times ten to the power of `exponent`.
 struct Step {
   int mantissa, exponent;
 
-  /// The double nearest to k steps, except with powers of ten that are not exact.
+  /// Returns k steps. The result is rounded correctly if the power of ten is exact as a double.
   [[nodiscard]] double times(double k) const {
     const double multiple = k * mantissa;
-    // A division by an exact power of ten is rounded once; a product with an inexact one twice.
+    // A division by an exact power of ten is rounded once; a multiplication by an inexact power is rounded twice.
     return exponent >= 0     ? multiple * std::pow(10.0, exponent)
            : exponent > -300 ? multiple / std::pow(10.0, -exponent)
                              : multiple / 1e300 / std::pow(10.0, -exponent - 300);
@@ -26,14 +26,15 @@ struct Step {
   }
 };
 
-/// The largest step at most `limit`.
+/// Returns the largest step that is at most `limit`.
 Step step_at_most(double limit) {
-  Step step{1, static_cast<int>(std::floor(std::log10(limit))) - 1};  // log10 may be off by one ulp
+  Step step{1, static_cast<int>(std::floor(std::log10(limit))) - 1};  // one less, because the result of log10 may be
+                                                                      // off by one ulp
   while (step.next().times(1) <= limit) step = step.next();
   return step;
 }
 
-/// 1.50e+07 becomes 1.5e7; text without an exponent does not change.
+/// Shortens 1.50e+07 to 1.5e7. Text without an exponent does not change.
 std::string brief(const std::string& text) {
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;
@@ -45,12 +46,12 @@ std::string brief(const std::string& text) {
   return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
 }
 
-/// A power of ten as in label_of(), but shorter if that has five characters or more.
+/// Returns the label of a power of ten as in label_of(), or a shorter form if that has five characters or more.
 std::string power_label(int e) {
   return e < -3 || e > 4 ? fmt::format("1e{}", e) : fmt::format("{:.{}f}", std::pow(10.0, e), std::max(-e, 0));
 }
 
-/// A number with the decimals of ten to the `exponent`.
+/// Returns a number with as many decimals as ten to the power of `exponent` has.
 std::string label_of(double value, int exponent) {
   const double size = std::abs(value);
   if (size == 0 && exponent < -4) return "0";
@@ -69,9 +70,9 @@ std::vector<Tick> linear_ticks(double low, double high, int most) {
   if (low == high) return {{low, number_words(low)}};
   most = std::max(most, 2);
   const double largest = std::max(std::abs(low), std::abs(high));
-  const double width = high / 2 - low / 2;  // halves, so that 1e308 does not overflow
+  const double width = high / 2 - low / 2;  // numbers are halved so that 1e308 does not overflow
   if (width <= largest * 1e-12) return {{low, brief(fmt::format("{}", low))}, {high, brief(fmt::format("{}", high))}};
-  // Ends that are multiples up to rounding count.
+  // Ends of the range that are multiples up to rounding are included.
   constexpr double slack = 1e-6;
   const auto first_of = [&](const Step& s) { return std::ceil(low / s.times(1) - slack) + 0.0; };  // no -0
   const auto last_of = [&](const Step& s) { return std::floor(high / s.times(1) + slack); };
@@ -93,7 +94,7 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int most) {
   const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-12));
   const int last = static_cast<int>(std::floor(std::log10(high) + 1e-12));
   if (last <= first) return linear_ticks(low, high, most);
-  // Multiples of `every`, so that 1 is among them if it is in the range.
+  // Only exponents that are multiples of `every` are used, so that 1 is among the values if it is in the range.
   const auto multiples = [&](int every) {
     return static_cast<int>(std::floor(double(last) / every) - std::ceil(double(first) / every)) + 1;
   };

@@ -11,10 +11,10 @@
 
 namespace tessera::annotation {
 
-/// A layer over an image, most of it empty: tiles of pixels are allocated when they are touched.
+/// A layer over an image. Since most of the layer is empty, tiles of pixels are allocated when they are first written.
 class TiledLayer {
  public:
-  static constexpr int side = 16;  ///< of a tile
+  static constexpr int side = 16;  ///< side of a tile, in pixels
   /// Row-major, premultiplied, in the image's own values.
   using Pixel = std::array<float, 4>;
   using Tile = std::array<Pixel, static_cast<std::size_t>(side) * side>;
@@ -27,13 +27,13 @@ class TiledLayer {
   [[nodiscard]] ImageSize size() const { return size_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// Null for an untouched tile.
+  /// Returns a tile; null if it has not been written.
   [[nodiscard]] const Tile* tile(int column, int row) const { return tiles_[index(column, row)].get(); }
 
   /// A pixel of the image, for writing.
   [[nodiscard]] Pixel& at(int x, int y) {
     std::unique_ptr<Tile>& tile = tiles_[index(x / side, y / side)];
-    if (!tile) tile = std::make_unique<Tile>();  // of zeros
+    if (!tile) tile = std::make_unique<Tile>();  // a tile of zeros
     return (*tile)[static_cast<std::size_t>(y % side) * side + static_cast<std::size_t>(x % side)];
   }
 

@@ -18,12 +18,12 @@ Typeface::Typeface(double size) : size_(size) {
   face_.reset(cairo_toy_font_face_create("DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL));
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
   measure_.reset(cairo_create(surface));
-  cairo_surface_destroy(surface);  // the context keeps it
+  cairo_surface_destroy(surface);  // the context keeps the surface alive
   select(measure_.get());
   cairo_scaled_font_t* font = cairo_get_scaled_font(measure_.get());
   if (const cairo_status_t status = cairo_status(measure_.get()); status != CAIRO_STATUS_SUCCESS)
     throw Error(ErrorCode::system_failure, fmt::format("annotation: Cairo fails: {}", cairo_status_to_string(status)));
-  // If the machine has no font, Cairo uses its own, with ASCII strokes.
+  // If the machine has no font, Cairo uses a font of its own, which has only ASCII characters made of strokes.
   if (cairo_scaled_font_get_type(font) == CAIRO_FONT_TYPE_USER)
     throw Error(ErrorCode::system_failure,
                 "annotation: no font is found; install one that fontconfig knows (Debian: fonts-dejavu-core)");
@@ -51,9 +51,9 @@ double Typeface::width(const std::string& text) const {
 }
 
 std::string Typeface::fitted(const std::string& text, double room) const {
-  constexpr std::size_t longest = 1000;  // most letters examined at either end
+  constexpr std::size_t longest = 1000;  // largest number of letters examined at either end
   const auto begins = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u; };
-  std::vector<std::size_t> after, before;  // where the first k letters end, and the last k begin
+  std::vector<std::size_t> after, before;  // positions where the first k letters end and where the last k letters begin
   for (std::size_t i = 0; i < text.size() && after.size() <= longest; ++i)
     if (begins(i)) after.push_back(i);
   if (after.size() <= longest) {
@@ -63,7 +63,7 @@ std::string Typeface::fitted(const std::string& text, double room) const {
   before.push_back(text.size());
   for (std::size_t i = text.size(); i > 0 && before.size() <= longest; --i)
     if (begins(i - 1)) before.push_back(i - 1);
-  const auto with = [&](std::size_t kept) {  // more of the beginning than of the end, which may be a unit
+  const auto with = [&](std::size_t kept) {  // keeps more letters of the beginning than of the end, which may be a unit
     return text.substr(0, after[kept - kept / 3]) + "…" + text.substr(before[kept / 3]);
   };
   std::size_t fits = 0, too_many = after.size() - 1;

@@ -11,27 +11,27 @@ typedef struct _cairo_font_face cairo_font_face_t;  // NOLINT(bugprone-reserved-
 
 namespace tessera::annotation {
 
-/// `text` as valid UTF-8 on one line: each invalid byte becomes U+FFFD, control characters become blanks.
+/// Returns `text` as valid UTF-8 on one line. Each invalid byte becomes U+FFFD, and control characters become blanks.
 std::string clean_text(const std::string& text);
 
-/// The font at one size, from Cairo: DejaVu Sans, or fontconfig's replacement. Letters that the font lacks are boxes.
+/// The font of Cairo at one size: DejaVu Sans, or fontconfig's replacement. Missing glyphs are drawn as boxes.
 class Typeface {
  public:
   /// `size` in pixels. Throws Error(system_failure) if there is no font.
   explicit Typeface(double size);
 
   [[nodiscard]] double size() const { return size_; }
-  /// Distance from the baseline up, and down, in pixels.
+  /// Largest distances of letters above and below the baseline, in pixels.
   [[nodiscard]] double ascent() const { return ascent_; }
   [[nodiscard]] double descent() const { return descent_; }
   [[nodiscard]] double line() const { return ascent_ + descent_; }
-  /// `text` must be clean.
+  /// Returns the width of a text in pixels. `text` must be clean (clean_text()).
   [[nodiscard]] double width(const std::string& text) const;
-  /// Shortens clean text to at most this width, replacing its middle by "…". Empty if not even one letter fits next to
-  /// that.
+  /// Shortens clean text to at most this width by replacing its middle by "…". The result is empty if not even one
+  /// letter fits next to "…".
   [[nodiscard]] std::string fitted(const std::string& text, double width) const;
 
-  /// Makes this the font of a context, unhinted, so that letters have the same shape at any position.
+  /// Sets this font in a context, without hinting, so that letters have the same shape at any position.
   void select(cairo_t* cairo) const;
 
  private:
