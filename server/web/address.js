@@ -18,7 +18,7 @@ export function fragment_of(state) {
 }
 
 /**
- * Undefined without a fragment. Throws an Error with a sentence for a fragment that is not a state.
+ * Returns undefined without a fragment. Throws an Error, whose message is a sentence, if the fragment is not a state.
  * @param {string} fragment @returns {State | undefined}
  */
 export function state_of_fragment(fragment) {

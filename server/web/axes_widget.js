@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The world's axes in the page's corner; they turn with the view immediately. Each end is a button that looks from
+ * The world's axes in the page's corner; they turn with the view immediately. Each end is a button for the view from
  * there.
  *
  * @typedef {import("./types.js").Camera} Camera
@@ -10,7 +10,7 @@ import { basis_of } from "./camera.js";
 import { svg } from "./dom.js";
 import { dot } from "./vector.js";
 
-/** Name, direction, the view from there. @type {[string, Vector, string][]} */
+/** Name and direction of an end, and the name of the view from there. @type {[string, Vector, string][]} */
 const ends = [["x", [1, 0, 0], "right"], ["y", [0, 1, 0], "back"], ["z", [0, 0, 1], "top"], ["-x", [-1, 0, 0], "left"], ["-y", [0, -1, 0], "front"], ["-z", [0, 0, -1], "bottom"]];
 
 export class AxesWidget {

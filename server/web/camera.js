@@ -38,7 +38,7 @@ export function basis_of(camera) {
   return { right, up: cross(right, forward), forward };
 }
 
-/** From the eye to the focal point. @param {Camera} camera */
+/** Distance from the eye to the focal point. @param {Camera} camera */
 export const distance_of = (camera) => length(subtract(camera.focal_point, camera.position));
 
 /** Height of the picture at the focal point, in world units. @param {Camera} camera */
@@ -55,7 +55,7 @@ export function point_at(camera, x, y) {
 }
 
 /**
- * Where a point is visible, and its planar depth. Undefined if it is behind a perspective eye.
+ * The position of a point in the picture, and its planar depth. Undefined if the point is behind a perspective eye.
  * @param {Camera} camera @param {Vector} point
  * @returns {{x: number, y: number, depth: number} | undefined}
  */
@@ -68,7 +68,7 @@ export function project(camera, point) {
   return { x: dot(offset, right) / height, y: dot(offset, up) / height, depth };
 }
 
-/** Eye and focal point moved together. @param {Camera} camera @param {Vector} by @returns {Camera} */
+/** The view with eye and focal point moved by a vector. @param {Camera} camera @param {Vector} by @returns {Camera} */
 export const moved = (camera, by) => ({
   ...camera, position: add(camera.position, by), focal_point: add(camera.focal_point, by),
 });
@@ -109,13 +109,13 @@ export function turned_on_table(camera, dx, dy, pole) {
   return { ...camera, position: add(camera.focal_point, scale(to_eye, distance_of(camera))), view_up: axis };
 }
 
-/** The scene turns clockwise by `angle` radians. @param {Camera} camera @param {number} angle @returns {Camera} */
+/** The view in which the scene is turned clockwise by `angle` radians. @param {Camera} camera @param {number} angle @returns {Camera} */
 export function rolled(camera, angle) {
   const { up, forward } = basis_of(camera);
   return { ...camera, view_up: unit(rotate(up, forward, -angle)) };
 }
 
-/** The scene follows a drag by (dx, dy). @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera} */
+/** The view in which the scene has followed a drag by (dx, dy). @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera} */
 export function panned(camera, dx, dy) {
   const { right, up } = basis_of(camera);
   const height = height_at_focus(camera);
@@ -158,7 +158,7 @@ export function looked(camera, dx, dy) {
 }
 
 /**
- * The other projection, with the same size of objects in the focal plane.
+ * The view in the given projection, with the same size of objects in the focal plane.
  * @param {Camera} camera @param {boolean} perspective @returns {Camera}
  */
 export function with_projection(camera, perspective) {
@@ -170,7 +170,7 @@ export function with_projection(camera, perspective) {
   return { ...rest, view_angle: default_angle, position: subtract(camera.focal_point, scale(forward, distance)) };
 }
 
-/** Another angle, with the same size of objects in the focal plane. @param {Camera} camera @param {number} angle degrees @returns {Camera} */
+/** The view with another angle and the same size of objects in the focal plane. @param {Camera} camera @param {number} angle degrees @returns {Camera} */
 export function with_angle(camera, angle) {
   if (!is_perspective(camera) || !(angle > 0) || !(angle < 180)) return camera;
   const distance = height_at_focus(camera) / 2 / Math.tan((angle / 2) * degree);

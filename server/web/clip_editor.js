@@ -14,7 +14,7 @@ import { dot, scale, unit } from "./vector.js";
 /** @type {[string, Vector][]} */
 const normals = [["keep the +x side", [1, 0, 0]], ["keep the -x side", [-1, 0, 0]], ["keep the +y side", [0, 1, 0]], ["keep the -y side", [0, -1, 0]], ["keep the +z side", [0, 0, 1]], ["keep the -z side", [0, 0, -1]]];
 
-/** The options of one kind. @param {any} value @returns {string[]} */
+/** The values of an option as a list. @param {any} value @returns {string[]} */
 const listed = (value) => (value ? [value].flat().map(String) : []);
 const is_box = (/** @type {string} */ word) => word.startsWith("box:");
 const digits = (/** @type {number} */ v) => Number(v.toPrecision(7));
@@ -86,7 +86,7 @@ export class ClipEditor {
     const bounds = this.#bounds(), shown = box ?? bounds;
     this.sliders.forEach((slider, i) => slider.show([bounds[i], bounds[i + 3]], [shown[i], shown[i + 3]]));
     const planes = this.#clips.filter((word) => !is_box(word));
-    // Rows are kept while a slider is dragged.
+    // The rows are not replaced while a slider is dragged.
     if (planes.length !== this.planes.children.length) this.planes.replaceChildren(...planes.map((_, i) => this.#plane_row(i)));
     planes.forEach((word, i) => this.#show_plane(i, word.split(",").map(Number)));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Conversion of options' colours to the form of the browser's controls. */
 
-/** sRGB of linear light, both 0 to 1. @param {number} linear */
+/** Converts linear light to an sRGB value, both from 0 to 1. @param {number} linear */
 const encoded = (linear) => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
 
 /**
@@ -17,7 +17,7 @@ export function hex_of(word, named = hex_of_name) {
   return /^[a-z]+$/.test(word) ? named(word) : undefined;
 }
 
-/** Converted by the browser. @param {string} name */
+/** Converts a CSS name, by means of the browser. @param {string} name */
 function hex_of_name(name) {
   if (!CSS.supports("color", name)) return undefined;
   const context = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));

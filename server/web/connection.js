@@ -36,12 +36,12 @@ export class Connection {
     this.socket = undefined;
     /** The reason that the server sent before it ended. */
     this.ended = "";
-    /** When the first state was sent to which nothing has been received; 0: none. */
+    /** Time when the first state without any answer was sent; 0: there is none. */
     this.asked_at = 0;
     this.checking = false;
-    /** Whether a socket has ever been open. */
+    /** Whether a socket has been open before. */
     this.was_open = false;
-    /** Milliseconds of silence after a state that trigger a check, and for an answer to the check's request. */
+    /** Milliseconds without an answer to a state after which the connection is checked, and time limit of the check's request. */
     this.silence = 20000;
     this.answer_time = 10000;
     window.addEventListener("online", () => this.retry());

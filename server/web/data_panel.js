@@ -23,7 +23,7 @@ export class DataPanel {
     this.last_step = 0;
     this.field = choice("", (name) => this.#choose_field(name));
     this.part = choice("Component", (part) => this.#choose_part(part));
-    // At the panel's top: the choice of data precedes their appearance.
+    // The field is at the top of the panel, since the choice of data precedes their appearance.
     this.field_row = row("Field", this.field, this.part);
     this.field_row.classList.add("panel-top");
     this.smooth = checkbox("Smooth", (on) => page.set_option("smooth", on ? true : undefined), "Average cell values to the points");
@@ -144,7 +144,7 @@ export class DataPanel {
     return true;
   }
 
-  /** Moves by a step, cyclically. @param {number} by */
+  /** Moves by a number of time steps, cyclically. @param {number} by */
   step_by(by) {
     if (this.step_count < 2) return;
     this.#set_step((this.current_step + by + this.step_count) % this.step_count, this.playing);
@@ -160,7 +160,7 @@ export class DataPanel {
     else this.page.history.settle("play");
   }
 
-  /** Call when a frame has been painted: the next step may follow. */
+  /** Must be called when a frame has been painted, so that the next step may follow. */
   painted() {
     if (!this.playing) return;
     clearTimeout(this.play_timer);
@@ -171,7 +171,7 @@ export class DataPanel {
     }, wait);
   }
 
-  /** Call after an error: ends playing. */
+  /** Ends playing. Must be called after an error. */
   stop() {
     if (this.playing) this.toggle_play();
   }

@@ -128,7 +128,7 @@ export const icon_button = (name, label, click, attributes = {}) =>
 export const icon = (name) => svg("svg", { class: "glyph", "aria-hidden": "true" }, svg("use", { href: `#icon-${name}` }));
 
 /**
- * Calls `work` once there has been no call for `delay` milliseconds.
+ * Returns a function that calls `work` after it has not been called for `delay` milliseconds.
  * @template {any[]} A @param {(...values: A) => void} work @param {number} delay
  */
 export function debounced(work, delay) {
@@ -139,7 +139,7 @@ export function debounced(work, delay) {
   };
 }
 
-/** Offers bytes as a file. @param {Blob} blob @param {string} name */
+/** Offers bytes to the user as a file. @param {Blob} blob @param {string} name */
 export function save_file(blob, name) {
   const link = element("a", { href: URL.createObjectURL(blob), download: name });
   document.body.append(link);
@@ -162,6 +162,6 @@ export function set_preference(name, value) {
   try {
     localStorage.setItem(`tessera.${name}`, value);
   } catch {
-    // A browser without storage: the page works, but does not remember.
+    // Without storage in the browser, the page works, but preferences are not kept.
   }
 }

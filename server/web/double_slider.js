@@ -31,7 +31,7 @@ export class DoubleSlider {
     const span = limits[1] - limits[0] || 1;
     this.sliders.forEach((slider, i) => show_value(slider, String(Math.round(((ends[i] - limits[0]) / span) * 1000))));
     this.texts.forEach((text, i) => show_value(text, short_number(ends[i], 5)));
-    // Where both handles meet, the one that can still move is on top.
+    // If both handles are at the same place, the one that can still move is on top.
     this.sliders[0].style.zIndex = ends[0] - limits[0] > span / 2 ? "1" : "";
     this.track.style.setProperty("--low", String((ends[0] - limits[0]) / span));
     this.track.style.setProperty("--high", String((ends[1] - limits[0]) / span));
@@ -40,7 +40,7 @@ export class DoubleSlider {
   /** @param {0|1} end @param {boolean} moving */
   #slid(end, moving) {
     const at = Number(this.sliders[end].value);
-    // A handle at its stop has exactly the limit's value.
+    // A handle at the end of its range has exactly the value of the limit.
     const value = at === 0 ? this.limits[0] : at === 1000 ? this.limits[1]
       : Number((this.limits[0] + (at / 1000) * (this.limits[1] - this.limits[0])).toPrecision(6));
     this.#set(end, value, moving);

@@ -20,7 +20,7 @@ export function split_field(word, names) {
     const name = begins(text);
     if (name !== undefined) return [name, text.slice(name.length + 1)];
   }
-  // A name that two fields have, without the association.
+  // The name belongs to two fields, and the word does not contain the association.
   return [names.find((name) => name === `cell:${word}` || name === `point:${word}`) ?? word, ""];
 }
 

@@ -6,7 +6,7 @@
  * @typedef {import("./types.js").State} State
  */
 
-/** A longer header is invalid. */
+/** Largest length of a valid header. */
 const most_header = 1 << 20;
 
 /**
@@ -41,7 +41,7 @@ export class StateSender {
     this.waiting = undefined;
     /** @type {{state: State, moving: boolean, time: number} | undefined} */
     this.latest = undefined;
-    /** When the event occurred that caused a state, by the state's number. @type {Map<number, number>} */
+    /** For each number of a state, the time of the event that caused the state. @type {Map<number, number>} */
     this.event_times = new Map();
   }
 
@@ -51,19 +51,19 @@ export class StateSender {
     this.#advance();
   }
 
-  /** Call when state `number` has been answered by a painted picture or an error. @param {number} number */
+  /** Must be called when a painted picture or an error has answered state `number`. @param {number} number */
   answered(number) {
     if (number < this.awaited) return;
     this.awaited = 0;
     this.#advance();
   }
 
-  /** Call when the server reports that the answer is in progress. */
+  /** Must be called when the server reports that the answer is in progress. */
   in_work() {
     this.sent_at = this.clock();
   }
 
-  /** Call for a new connection: sends the latest state. */
+  /** Sends the latest state. Must be called for a new connection. */
   opened() {
     this.open = true;
     this.awaited = 0;
@@ -75,7 +75,7 @@ export class StateSender {
     this.open = false;
   }
 
-  /** Call periodically, to give up on answers that never came. */
+  /** Stops waiting for answers that do not arrive. Must be called periodically. */
   tick() {
     if (this.awaited && this.clock() - this.sent_at > this.patience) this.awaited = 0;
     this.#advance();

@@ -25,12 +25,12 @@ export class Framing {
     return width / height;
   }
 
-  /** Call when the data are available, with a camera for the picture's shape. */
+  /** Must be called when the data are available and the camera has been made for the picture's shape. */
   begin() {
     this.shape = this.#shape_now;
   }
 
-  /** Call when the picture's shape has changed. */
+  /** Must be called when the picture's shape has changed. */
   follow() {
     const { page } = this;
     const before = this.shape;

@@ -21,7 +21,7 @@ import * as functions from "./transfer_function.js";
 const margin = { left: 34, right: 10, top: 16, bottom: 54 };
 const height = 250;
 const strip_height = 16;
-/** CSS pixels. */
+/** Usual size of the page's text, in CSS pixels. */
 const usual_text = 14;
 
 export class FunctionEditor {
@@ -188,7 +188,7 @@ export class FunctionEditor {
     const [left, right] = edited.range.map((v) => this.x_of(v));
     /** @type {[number, number][]} */
     const places = [];
-    // Straight lines between opacities are curved on a logarithmic axis: draw them in pieces.
+    // Straight lines between opacities are curves on a logarithmic axis, so they are drawn in pieces.
     edited.opacities.forEach(([t, opacity], i) => {
       const next = edited.opacities[i + 1];
       const pieces = next && this.log_opacity ? 24 : 1;
@@ -273,13 +273,13 @@ export class FunctionEditor {
     return `${kind}-handle${this.#selected(kind, index) ? " selected" : ""}`;
   }
 
-  /** A position in the drawing. @param {{clientX: number, clientY: number}} event */
+  /** The position of an event in the drawing. @param {{clientX: number, clientY: number}} event */
   #place(event) {
     const box = this.element.getBoundingClientRect();
     return { x: ((event.clientX - box.left) / box.width) * this.width, y: ((event.clientY - box.top) / box.height) * height };
   }
 
-  /** All handles, where they are drawn. @returns {import("./handles.js").Handle[]} */
+  /** All handles with their positions in the drawing. @returns {import("./handles.js").Handle[]} */
   #handles() {
     const { edited } = this;
     if (!edited) return [];

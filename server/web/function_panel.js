@@ -23,7 +23,7 @@ const histogram_words = [...data_words, "threshold", "clip", "log"];
 /** The name of the colours at the beginning of a function's name. @param {string | undefined} name */
 const preset_of = (name) => /^[\w-]+(?=$|[ :])/.exec(name ?? "")?.[0];
 
-/** A point as the server returns it. @param {number[]} point */
+/** A point with the precision of those that the server returns. @param {number[]} point */
 const rounded = (point) => point.map((v) => Number(v.toPrecision(6)));
 
 export class FunctionPanel {
@@ -134,7 +134,7 @@ export class FunctionPanel {
     this.update();
   }
 
-  /** Call when the state or the data have changed. */
+  /** Must be called when the state or the data have changed. */
   update() {
     const { page } = this;
     this.log.input.checked = page.option("log") === true;
@@ -250,7 +250,7 @@ export class FunctionPanel {
   async #choose(colors, shape) {
     const [name, old_shape] = this.#words();
     const word = this.#word;
-    // The server's default function keeps its range, which a name would not.
+    // The function is kept as points, since the server's default function has a range that a name would not keep.
     if (typeof word === "string" || (word !== undefined && colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
       if (both !== word) this.#hold(true); // the previous function is drawn until the server answers
@@ -276,7 +276,7 @@ export class FunctionPanel {
     this.#show();
   }
 
-  /** A cancelled drag. */
+  /** Reverts a cancelled drag. */
   #cancel() {
     this.page.history.cancel();
     this.#show();

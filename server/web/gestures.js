@@ -118,7 +118,7 @@ export class Gestures {
     return mode === "trackball" ? turned_as_ball(camera, dx, dy) : turned_on_table(camera, dx, dy, this.wiring.pole());
   }
 
-  /** Two fingers: the two touched points stay under them. @param {number} id @param {{x: number, y: number}} after */
+  /** Handles two fingers: the points that they touch stay under the fingers. @param {number} id @param {{x: number, y: number}} after */
   #pinch(id, after) {
     const [first, second] = [...this.pointers.keys()];
     const other_id = id === first ? second : first;
@@ -183,7 +183,7 @@ export class Gestures {
     this.#rest_soon("keys");
   }
 
-  /** Moves in every frame of the screen while keys are pressed. */
+  /** Moves the camera in every frame of the screen while keys are pressed. */
   #fly() {
     this.flying = true;
     let last = performance.now();

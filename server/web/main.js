@@ -84,7 +84,7 @@ const picture_tools = [icon_button("link", "Copy link (L)", () => void picture_p
 by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keyboard shortcuts (?)", show_help), panel_toggle);
 for (const tool of picture_tools) tool.disabled = true;
 
-/** Enables the controls once there are data. */
+/** Enables the controls when data are available. */
 function wake_controls() {
   for (const id of ["panel", "view-tools", "status"]) by_id(id).inert = false;
   by_id("axes").removeAttribute("hidden");
@@ -152,7 +152,7 @@ function upright() {
   return /** @type {import("./types.js").Vector} */ ([0, 1, 2].map((i) => (i === axis ? Math.sign(up[i]) : 0)));
 }
 
-// States to the server, frames back.
+// Sends states to the server, which answers with frames.
 
 const sender = new StateSender((message) => connection.send(message));
 
@@ -320,13 +320,13 @@ async function load_data() {
     }
   }
 }
-/** The reason why the file cannot be shown with the server's start options; empty: it can. */
+/** The reason why the file cannot be shown with the server's start options; empty if it can be shown. */
 let start_error = "";
 
 /** @param {import("./types.js").Data} data */
 function begin(data) {
   if (page.ready) {
-    // Reconnected: ask again for the data of the page's own state.
+    // After reconnecting, the page requests the data of its own state again.
     known_data = "";
     ask_anew();
     return;
@@ -485,7 +485,7 @@ document.addEventListener("keydown", (event) => {
   act();
 });
 
-// For scripts and tests: what the page shows, and its latencies.
+// Values for scripts and tests: what the page shows, and its latencies.
 Object.assign(window, {
   tessera: {
     state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: (/** @type {boolean | undefined} */ preview) => status.latencies(preview),

@@ -52,7 +52,7 @@ export class Messages {
   /** @param {"note"|"error"} kind @param {string} about @param {string} sentence @param {{text: string, act: () => void}} [action] */
   #show(kind, about, sentence, action) {
     const before = this.shown.get(about);
-    // One cause often makes several requests fail: it is reported once.
+    // Several requests often fail for the same reason, which is reported only once.
     if (!before && [...this.shown.values()].some((line) => line.firstChild?.textContent === sentence)) return;
     const line = element("div", { class: `message ${kind}`, role: kind === "error" ? "alert" : undefined },
       element("span", {}, sentence),

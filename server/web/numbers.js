@@ -2,7 +2,7 @@
 /** Formatting and parsing of numbers, and axes. */
 
 /**
- * Short text with `digits` significant digits: 0.82, 12 300, 1.5e-7.
+ * Returns a short text with `digits` significant digits: 0.82, 12 300, 1.5e-7.
  * @param {number|null|undefined} value @param {number} [digits]
  */
 export function short_number(value, digits = 4) {
@@ -85,7 +85,7 @@ export function fraction_of(value, ends, log) {
   return Math.log(Math.max(value, Number.MIN_VALUE) / ends[0]) / Math.log(ends[1] / ends[0]);
 }
 
-/** The reverse. @param {number} fraction @param {[number, number]} ends @param {boolean} log */
+/** The value at a position on an axis, the reverse of fraction_of(). @param {number} fraction @param {[number, number]} ends @param {boolean} log */
 export function value_of(fraction, ends, log) {
   if (!log || !(ends[0] > 0)) return ends[0] + fraction * (ends[1] - ends[0]);
   return ends[0] * (ends[1] / ends[0]) ** fraction;

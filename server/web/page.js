@@ -29,7 +29,7 @@ export class Page {
     this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
     /** The options with which the server was started; null: left out, as nothing can be shown with it. @type {State} */
     this.started = {};
-    /** The same, without options left out. @type {State} */
+    /** The options with which the server was started, including those left out. @type {State} */
     this.whole_start = {};
     /** Ranges of fields without threshold and cuts, by the options that determine the field. @type {Map<string, [number, number]>} */
     this.whole_ranges = new Map();

@@ -76,7 +76,7 @@ export class PicturePanel {
     }
   }
 
-  /** The typed size, if it is valid. */
+  /** Returns the typed size, if it is valid. */
   #sides() {
     const width = parsed_number(this.width.value), height = parsed_number(this.height.value);
     const good = (/** @type {number} */ side) => Number.isInteger(side) && side >= 1 && side <= 16384;

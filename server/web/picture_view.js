@@ -12,7 +12,7 @@ const most_pixels = 8e6;
 /** While moving, the size to which a canvas is scaled up in software; the screen's scaling does the rest. */
 const most_moving_pixels = 1.5e6;
 
-/** The same shape with at most `most` pixels. @param {Size} size @param {number} most @returns {Size} */
+/** A size of the same shape with at most `most` pixels. @param {Size} size @param {number} most @returns {Size} */
 function limited({ width, height }, most) {
   const shrink = Math.min(1, Math.sqrt(most / (width * height)));
   return { width: Math.max(16, Math.floor(width * shrink)), height: Math.max(16, Math.floor(height * shrink)) };
@@ -25,7 +25,7 @@ export class PictureView {
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     /** The displayed frame. @type {FrameHeader | undefined} */
     this.shown = undefined;
-    /** Its bytes, as received. @type {Uint8Array<ArrayBuffer> | undefined} */
+    /** The bytes of the displayed frame, as received. @type {Uint8Array<ArrayBuffer> | undefined} */
     this.bytes = undefined;
     this.painted = 0;
     /** The size that states request, if it does not follow the window. @type {Size | undefined} */
@@ -96,7 +96,7 @@ export class PictureView {
     return true;
   }
 
-  /** A new connection numbers its frames from the beginning. */
+  /** Must be called for a new connection, which numbers its frames from the beginning. */
   forget_numbers() {
     this.painted = 0;
   }
@@ -110,13 +110,13 @@ export class PictureView {
     return { x: (client_x - box.left - box.width / 2) / box.height, y: -(client_y - box.top - box.height / 2) / box.height };
   }
 
-  /** The reverse, in CSS pixels from the frame's top left corner. @param {{x: number, y: number}} place */
+  /** The reverse of place_of(), in CSS pixels from the frame's top left corner. @param {{x: number, y: number}} place */
   window_place(place) {
     const box = this.canvas.getBoundingClientRect(), frame = this.frame.getBoundingClientRect();
     return { left: box.left - frame.left + box.width / 2 + place.x * box.height, top: box.top - frame.top + box.height / 2 - place.y * box.height };
   }
 
-  /** Picture coordinates as pixels of the picture that states request. @param {{x: number, y: number}} place */
+  /** Converts picture coordinates to pixels of the picture that states request. @param {{x: number, y: number}} place */
   pixel_of(place) {
     const { width, height } = this.size();
     const inside = (/** @type {number} */ v, /** @type {number} */ most) => Math.max(0, Math.min(most - 1, Math.floor(v)));

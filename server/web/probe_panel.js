@@ -36,7 +36,7 @@ export class ProbePanel {
 
   begin() {}
 
-  /** Call for other data: drops the result for the previous data, and any pending answer. */
+  /** Drops the result for the previous data and any pending answer. Must be called for other data. */
   forget() {
     this.question.drop();
     this.point = undefined;

@@ -7,7 +7,7 @@
 import { token } from "./token.js";
 import { in_page_words } from "./wording.js";
 
-/** The data are still being read. */
+/** The error of a request while the data are still being read. */
 export class StillReading extends Error {
   /** @param {{stage?: string, fraction?: number|null}} progress */
   constructor(progress) {
@@ -19,7 +19,7 @@ export class StillReading extends Error {
 /** The server refuses the page: the token is not the server's, or the page's address is not allowed. */
 export class Refused extends Error {}
 
-/** The request is invalid, or does not fit the data. */
+/** The error of a request that is invalid or does not match the data. */
 export class Unfit extends Error {}
 
 export const unreachable = "The server cannot be reached.";
@@ -30,7 +30,7 @@ let behind_password = false;
 /** @param {string} path @param {RequestInit} [options] @returns {Promise<Response>} */
 async function fetched(path, options) {
   const headers = { ...(behind_password ? { "X-Tessera-Token": token() } : { Authorization: `Bearer ${token()}` }), ...options?.headers };
-  // Cookies and passwords belong to a proxy, if the page was loaded through one.
+  // Cookies and passwords are sent for a proxy through which the page may have been loaded.
   return fetch(path, { credentials: "same-origin", ...options, headers });
 }
 
@@ -66,7 +66,7 @@ export const post = (path, question, signal) =>
 export const ask_about = async (path, question, signal) => (await post(path, question, signal)).json();
 
 /**
- * One request at a time: another one aborts the previous one, whose answer is then dropped.
+ * Allows one request at a time: a further request aborts the previous one, whose answer is dropped.
  */
 export class LatestQuestion {
   constructor() {

@@ -11,15 +11,15 @@
  * @property {"change"|"cancel"|"undo"|"redo"|"load"|"adjust"} cause
  */
 
-/** Most steps kept. */
+/** Largest number of steps that are kept. */
 const most_steps = 500;
-/** Milliseconds within which changes with the same name are one step. */
+/** Changes with the same name within this time, in milliseconds, are one step. */
 const merge_time = 900;
 
-/** Whether two values are the same as JSON. @param {any} a @param {any} b */
+/** Whether two values are equal when converted to JSON. @param {any} a @param {any} b */
 export const same = (a, b) => a === b || JSON.stringify(a) === JSON.stringify(b);
 
-/** The state without empty keys. @param {State} state @returns {State} */
+/** Returns the state without keys whose values are empty. @param {State} state @returns {State} */
 const tidied = (state) => Object.fromEntries(Object.entries(state).filter(([, value]) => value !== undefined && !(Array.isArray(value) && value.length === 0)));
 
 export class StateHistory {

@@ -10,7 +10,7 @@ import { median_and_95 } from "./frames.js";
 import { short_number, short_time } from "./numbers.js";
 import { ask_about } from "./requests.js";
 
-/** Most latencies kept. */
+/** Largest number of latencies that are kept. */
 const most_latencies = 2000;
 
 export class StatusLine {

@@ -70,7 +70,7 @@ class SurfaceList {
 
   update() {
     const { surfaces } = this;
-    // Rows are kept while a slider is dragged.
+    // The rows are not replaced while a slider is dragged.
     if (surfaces.length !== this.element.children.length) this.element.replaceChildren(...surfaces.map((_, i) => this.#row(i)));
     surfaces.forEach((surface, i) => {
       const [what, color, opacity] = this.element.children[i].querySelectorAll("input, select");
@@ -141,7 +141,7 @@ export class SurfaceEditor {
     this.others.set([...there, { what, color: what === "boundary" ? "#ffffff" : "#cccccc", opacity: what === "boundary" ? 0.3 : 0.5 }], false);
   }
 
-  /** The transfer function's colour at a value. @param {number} value */
+  /** Returns the colour of the transfer function at a value. @param {number} value */
   #function_color(value) {
     const edited = this.page.edited_function();
     return edited ? hex_color(color_at(edited, Math.max(0, Math.min(1, fraction_of(value, edited.range, edited.log))))) : "#cccccc";
@@ -153,7 +153,7 @@ export class SurfaceEditor {
     const unseen = range ? this.isos.surfaces.map((surface) => Number(surface.what)).filter((value) => !(range[0] < value && value <= range[1])) : [];
     this.unseen.hidden = unseen.length === 0;
     const text = unseen.length === 0 || !range ? "" : `Nothing is seen at ${unseen.map((value) => short_number(value, 6)).join(", ")}: the field goes from ${short_number(range[0], 6)} to ${short_number(range[1], 6)}.`;
-    // Set only when it changes, not with every update.
+    // The text is set only when it changes, not with every update.
     if (this.unseen.textContent !== text) this.unseen.textContent = text;
   }
 

@@ -15,7 +15,7 @@ export function find_token() {
     if (given) sessionStorage.setItem(place(), given);
     current = given ?? sessionStorage.getItem(place()) ?? "";
   } catch {
-    // A browser without storage: the token stays in the address, so that the page can be reloaded.
+    // Without storage in the browser, the token stays in the address, so that the page can be reloaded.
     current = given ?? "";
     return;
   }
@@ -32,7 +32,7 @@ export function set_token(text) {
   try {
     sessionStorage.setItem(place(), found);
   } catch {
-    // Kept until the page is reloaded.
+    // Without storage, the token is kept until the page is reloaded.
   }
   return true;
 }
