@@ -45,7 +45,7 @@ struct MeshCounts {
   std::uint64_t cells_clipped = 0;       ///< dropped: completely clipped away
   std::uint64_t cells_cut = 0;           ///< kept in part
 
-  MeshCounts& operator+=(const MeshCounts& other);  ///< adds those of another part
+  MeshCounts& operator+=(const MeshCounts& other);  ///< adds the counts of another part of the mesh
   bool operator==(const MeshCounts&) const = default;
 };
 
@@ -145,7 +145,7 @@ struct HigherOrderCells {
   double field_error = 0;        ///< largest error of the field at any place, in the field's unit; estimated to first
                                  ///< order
 
-  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< adds those of another part
+  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< adds the counts of another part of the mesh
   bool operator==(const HigherOrderCells&) const = default;
 };
 using HigherOrderCounter = Counter<HigherOrderCells>;

@@ -74,7 +74,7 @@ export const moved = (camera, by) => ({
 });
 
 /**
- * The view turned about the focal point, as if a ball were dragged by (dx, dy) of the picture's height; half the height
+ * The view turned about the focal point, as if a ball were dragged by (dx, dy) in units of the picture's height; half of it
  * is a quarter turn. The up direction turns too, so that every view can be reached.
  * @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera}
  */

@@ -89,8 +89,8 @@ export class Connection {
   }
 
   /**
-   * Call periodically. A socket whose network is gone, after a laptop's sleep, may stay open for long: this checks
-   * silence with a request, which a server answers however long its frame takes.
+   * Must be called periodically. A socket without a network, after a laptop's sleep, may stay open for long: this checks
+   * missing answers with a request, which a server answers even if its frame takes long.
    */
   async check() {
     const { socket } = this;

@@ -10,7 +10,7 @@
 const most_header = 1 << 20;
 
 /**
- * A frame's header and picture. Throws an Error with a sentence for invalid bytes.
+ * Decodes a frame's header and picture. Throws an Error, whose message is a sentence, for invalid bytes.
  * @param {ArrayBuffer} bytes @returns {{header: FrameHeader, image: Uint8Array<ArrayBuffer>}}
  */
 export function decoded_frame(bytes) {

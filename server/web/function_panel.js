@@ -250,7 +250,7 @@ export class FunctionPanel {
   async #choose(colors, shape) {
     const [name, old_shape] = this.#words();
     const word = this.#word;
-    // The function is kept as points, since the server's default function has a range that a name would not keep.
+    // A name is set unless the server's default function is edited: a name would not keep the range of that function, so its points are set below.
     if (typeof word === "string" || (word !== undefined && colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
       if (both !== word) this.#hold(true); // the previous function is drawn until the server answers

@@ -14,7 +14,7 @@ export function short_number(value, digits = 4) {
 }
 
 /**
- * A coordinate to a hundred-thousandth of the data's size, wherever the data are.
+ * Returns a coordinate, rounded to a hundred-thousandth of the data's size, for data at any position.
  * @param {number} value @param {number} extent length of the data's diagonal
  */
 export function short_place(value, extent) {
@@ -36,7 +36,7 @@ export function short_time(milliseconds) {
 export const short_bytes = (bytes) => (bytes < 1000 ? `${bytes} bytes` : bytes < 1e6 ? `${short_number(bytes / 1e3, 3)} kB` : `${short_number(bytes / 1e6, 3)} MB`);
 
 /**
- * A typed number; accepts decimal commas. NaN for anything else.
+ * Parses a typed number; accepts decimal commas. NaN for any other text.
  * @param {string} text
  */
 export function parsed_number(text) {
@@ -45,7 +45,7 @@ export function parsed_number(text) {
 }
 
 /**
- * Numbers separated by commas or blanks: undefined unless there are `count` of them.
+ * Parses numbers separated by commas or blanks. Undefined unless there are `count` of them.
  * @param {string} text @param {number} count @returns {number[] | undefined}
  */
 export function parsed_numbers(text, count) {

@@ -27,7 +27,7 @@ export class Page {
     /** Whether `data` is available. */
     this.ready = false;
     this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
-    /** The options with which the server was started; null: left out, as nothing can be shown with it. @type {State} */
+    /** The options with which the server was started; null: the option is left out, because nothing can be shown with it. @type {State} */
     this.started = {};
     /** The options with which the server was started, including those left out. @type {State} */
     this.whole_start = {};
