@@ -75,10 +75,9 @@ void require_real_name(const std::filesystem::path& file) {
 
 void require_uncompressed(const std::filesystem::path& file) {
   if (is_inflated(file))
-    throw scene::bad_input(
-        fmt::format("{}: it goes with other files, which cannot be found from within a gzip file; unpack it with "
-                    "gunzip",
-                    file.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: it refers to other files, which cannot be found from within a gzip file; unpack it with gunzip",
+        file.string()));
 }
 
 scene::Error InflatedFile::renamed(const scene::Error& error) const {

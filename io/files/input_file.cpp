@@ -38,7 +38,8 @@ system::PositionalFile open_input(const std::filesystem::path& file) {
   if (size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.string()));
   if (is_git_lfs_pointer(opened, size))
-    throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: it is a Git LFS pointer, not the file itself; `git lfs pull` downloads the file", file.string()));
   return opened;
 }
 

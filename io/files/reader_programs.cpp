@@ -110,7 +110,7 @@ scene::Error missing_reader(Reader reader, const std::string& source, const Form
   const ReaderProgram& program = reader_program(reader);
   // Formats that this library reads itself need a reader only for their rare features.
   const char* const words = format != nullptr && !needs_reader(*format, reader)
-                                ? "{}: this {} file has parts that are {} by {} alone"
+                                ? "{}: this {} file has parts that are {} only by {}"
                                 : "{}: {} files are {} by {}";
   return scene::bad_input(fmt::format(fmt::runtime(words), source, format != nullptr ? format->name : "such",
                                       program.does, program.program) +

@@ -26,7 +26,7 @@ AxisCoordinates coordinates_of(const ForeignFile& file, const ForeignArray& arra
                                std::int64_t points) {
   if (static_cast<std::int64_t>(array.tuples) != points || array.components != 1)
     throw damaged(file.source,
-                  fmt::format("it has {} coordinates along {} for {} points", array.tuples, "xyz"[axis], points));
+                  fmt::format("it has {} coordinates along {}, but {} points", array.tuples, "xyz"[axis], points));
   AxisCoordinates c{array.type, std::vector<double>(array.tuples)};
   read_tuples(file.arrays->copy(array, file.source), array.type, 1, 0, 0, c.values);
   return c;

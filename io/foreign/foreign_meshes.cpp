@@ -72,8 +72,7 @@ scene::TimeStepRead chosen_of(std::span<const Plot3dStep> steps, const InputFile
 }
 
 [[noreturn]] void refuse_beginning(const InputFile& file, const char* format) {
-  throw scene::bad_input(
-      fmt::format("{}: it does not begin as a file of {} does; check what it is", file.name, format));
+  throw scene::bad_input(fmt::format("{}: it does not begin like a file of {}; check what it is", file.name, format));
 }
 
 }  // namespace
@@ -84,7 +83,7 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options
   const XmlKind* const kind = kind_of(type);
   if (type.empty()) {
     require_no_utf16(file.beginning, source);
-    throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin like a VTK XML file; check that it is one", source));
   }
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(
@@ -166,9 +165,11 @@ cells::MeshBlocks read_plot3d(const InputFile& input, const MeshOptions& options
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
   std::vector<std::string> notes;
   if (q.empty())
-    notes.emplace_back(is_inflated(file)
-                           ? "next to a gzip file no solution (Q) is looked for: it has no field; name one by `q`"
-                           : "no solution (Q) file is next to the grid: it has no field; name one by `q`");
+    notes.emplace_back(
+        is_inflated(file)
+            ? "the program does not search for a solution (Q) file next to a gzip file, so the grid has no field; name "
+              "a file with `q`"
+            : "there is no solution (Q) file next to the grid, so the grid has no field; name a file with `q`");
   else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
     notes.push_back(fmt::format("{} {} after the solution in {} are not used", left,
                                 layout.is_text ? "numbers" : "bytes", q.filename().string()));
@@ -206,8 +207,7 @@ cells::MeshBlocks read_plot3d_list(const InputFile& file, const MeshOptions& opt
   for (cells::CellBlock& block : result.blocks)
     if (block.source.empty()) block.source = step.grid.string();
   result.time_step = std::move(chosen);
-  if (step.has_functions)
-    result.notes.emplace_back("the list names a file of functions next to the solution, which is not read");
+  if (step.has_functions) result.notes.emplace_back("the list also names a file of functions, which is not read");
   return result;
 }
 

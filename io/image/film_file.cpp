@@ -88,7 +88,7 @@ std::filesystem::path require_ffmpeg(const std::filesystem::path& file) {
 const FilmKind& require_kind(const std::filesystem::path& file) {
   const FilmKind* const kind = kind_of(file);
   if (kind == nullptr)
-    throw bad_input(file.string() + ": is not a film by its name; end it in .mp4, .mov, .mkv, .webm or .gif");
+    throw bad_input(file.string() + ": does not have the name of a film; end it in .mp4, .mov, .mkv, .webm or .gif");
   return *kind;
 }
 
@@ -257,8 +257,8 @@ FilmFile::~FilmFile() = default;
 void FilmFile::add(const Image& image) {
   State& s = *state_;
   if (image.size != s.size)
-    throw bad_input(fmt::format("{}: an image of {}x{} among those of {}x{}; give all one size", s.file.string(),
-                                image.size.width, image.size.height, s.size.width, s.size.height));
+    throw bad_input(fmt::format("{}: an image of {}x{} pixels follows images of {}x{}; give all images the same size",
+                                s.file.string(), image.size.width, image.size.height, s.size.width, s.size.height));
   const io::DisplayRows display(image, s.file, s.options.image, 3);
   std::vector<float> rgba;
   s.bytes.resize(display.row_bytes());
@@ -270,7 +270,7 @@ void FilmFile::add(const Image& image) {
       if (sent < 0 && errno == EINTR) continue;
       if (sent < 0) {
         s.end();
-        s.fail("it ended before the last image");
+        s.fail("it exited before the last image");
       }
       next += sent;
       left -= static_cast<std::size_t>(sent);

@@ -42,11 +42,10 @@ void check_tidy(const scene::DeepImage& image, const std::filesystem::path& file
       bool good = s.z <= s.z_back && s.z >= last && s.alpha >= 0 && s.alpha <= 1;
       for (const auto& channel : channels) good = good && std::isfinite(s.*channel.second);
       if (!good)
-        throw scene::Error(
-            scene::ErrorCode::system_failure,
-            fmt::format("{}: pixel ({}, {}) has a sample from {} to {} behind {}, alpha {}; not written, "
-                        "please report",
-                        file.string(), p % width, p / width, s.z, s.z_back, last, s.alpha));
+        throw scene::Error(scene::ErrorCode::system_failure,
+                           fmt::format("{}: pixel ({}, {}) has a sample from depth {} to {} after a sample that ends "
+                                       "at {}, with alpha {}; the image was not written, please report this",
+                                       file.string(), p % width, p / width, s.z, s.z_back, last, s.alpha));
       last = s.z_back;
     }
   }
@@ -86,8 +85,9 @@ void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& 
   scene::validate(image.size);
   const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
   if (image.begin.size() != pixels + 1 || image.begin.back() != image.samples.size())
-    throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: {} sample lists for {} pixels; please report",
-                                                                     file.string(), image.begin.size(), pixels));
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("{}: there are {} sample lists for {} pixels; please report this", file.string(),
+                                   image.begin.size(), pixels));
   check_tidy(image, file);
   system::AtomicFile target(file);
   try {

@@ -58,8 +58,9 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
       for (std::size_t i = 0; i < row.size(); ++i) {
         if constexpr (is_half)
           if (std::abs(row[i]) > 65504.0f)
-            throw scene::bad_input(fmt::format("{}: pixel ({}, {}) is {}, beyond half's 65504; write float",
-                                               file.string(), i / 4, y, row[i]));
+            throw scene::bad_input(
+                fmt::format("{}: pixel ({}, {}) is {}, above 65504, the largest 16-bit float; write 32-bit floats",
+                            file.string(), i / 4, y, row[i]));
         out[i] = Number(row[i]);
       }
     }
@@ -155,11 +156,11 @@ scene::Image read_exr(const std::filesystem::path& file) {
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
                        height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || height < 1 || width > scene::max_image_side || height > scene::max_image_side)
-      throw scene::bad_input(fmt::format("{}: is {} by {} pixels; each side must be 1 to {}", file.string(), width,
+      throw scene::bad_input(fmt::format("{}: it is {} by {} pixels; each side must be 1 to {}", file.string(), width,
                                          height, scene::max_image_side));
     for (const char* name : {"R", "G", "B"})
       if (input.header().channels().findChannel(name) == nullptr)
-        throw scene::bad_input(fmt::format("{}: has no channel {}; give an RGB image", file.string(), name));
+        throw scene::bad_input(fmt::format("{}: it has no channel {}; give an RGB image", file.string(), name));
     scene::Image image({static_cast<int>(width), static_cast<int>(height)});
     const auto row_floats = static_cast<std::size_t>(width);
     const auto base = [&](const float* first, std::size_t floats_per_pixel) {

@@ -30,7 +30,8 @@ ImageFormat image_format_of(const std::filesystem::path& file) {
 }
 
 scene::Error unknown_extension(const std::filesystem::path& file) {
-  return scene::bad_input(file.string() + ": is not an image by its name; end it in .exr, .png, .jpg, .tif or .pfm");
+  return scene::bad_input(file.string() +
+                          ": does not have the name of an image; end it in .exr, .png, .jpg, .tif or .pfm");
 }
 
 }  // namespace
@@ -48,13 +49,15 @@ void composited_row(const scene::Image& image, int y, const ImageFileOptions& op
       if (!std::isfinite(in[k]))
         throw scene::Error(
             scene::ErrorCode::system_failure,
-            fmt::format("{}: pixel ({}, {}) came out as {}; not written, please report", file.string(), x, y, in[k]));
+            fmt::format("{}: pixel ({}, {}) was computed as {}; the image was not written, please report this",
+                        file.string(), x, y, in[k]));
       out[k] = in[k];
     }
     if (std::isnan(image.depth[first + x]))
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         fmt::format("{}: the depth of pixel ({}, {}) is not a number; not written, please report",
-                                     file.string(), x, y));
+      throw scene::Error(
+          scene::ErrorCode::system_failure,
+          fmt::format("{}: the depth of pixel ({}, {}) is not a number; the image was not written, please report this",
+                      file.string(), x, y));
     if (options.background) {
       for (int k = 0; k < 3; ++k) out[k] += (1 - in[3]) * background[k];
       out[3] = 1;
@@ -69,13 +72,14 @@ void check(const scene::Image& image, const std::filesystem::path& file, const I
   const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
   if (image.rgba.size() != 4 * pixels || image.depth.size() != pixels)
     throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: {} colours and {} depths for {} pixels; please report", file.string(),
-                                   image.rgba.size(), image.depth.size(), pixels));
+                       fmt::format("{}: there are {} colours and {} depths for {} pixels; please report this",
+                                   file.string(), image.rgba.size(), image.depth.size(), pixels));
   if (options.background)
     for (int k = 0; k < 3; ++k)
       if (!(std::isfinite((*options.background)[k]) && (*options.background)[k] >= 0))
         throw scene::bad_input(
-            fmt::format("background {} is not finite or negative; give three numbers", (*options.background)[k]));
+            fmt::format("background {} has a component that is negative or not finite; give three numbers of 0 or more",
+                        (*options.background)[k]));
 }
 
 }  // namespace
@@ -126,10 +130,10 @@ scene::Image read_image(const std::filesystem::path& file) {
       case ImageFormat::pfm:
         return read_pfm(file);
       default:
-        throw scene::bad_input(file.string() + ": cannot be read back by its name; .exr and .pfm can");
+        throw scene::bad_input(file.string() + ": images of this type cannot be read back; give an .exr or a .pfm");
     }
   } catch (const std::bad_alloc&) {
-    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": no memory for the image");
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": memory ran out for the image");
   }
 }
 

@@ -80,10 +80,11 @@ bool finish(Jpeg& jpeg) {
 /// Encodes the whole file with `jpeg`.
 void encode(Jpeg& jpeg, const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   if (image.size.width > JPEG_MAX_DIMENSION || image.size.height > JPEG_MAX_DIMENSION)
-    throw scene::bad_input(fmt::format("{}: is {}x{} pixels, a .jpg has at most {} a side; write .png", file.string(),
-                                       image.size.width, image.size.height, JPEG_MAX_DIMENSION));
+    throw scene::bad_input(fmt::format("{}: it is {}x{} pixels, but a .jpg has at most {} per side; write .png",
+                                       file.string(), image.size.width, image.size.height, JPEG_MAX_DIMENSION));
   if (options.jpeg_quality < 1 || options.jpeg_quality > 100)
-    throw scene::bad_input(fmt::format("{}: the quality {} is not 1 to 100", file.string(), options.jpeg_quality));
+    throw scene::bad_input(
+        fmt::format("{}: the quality is {}, but must be 1 to 100", file.string(), options.jpeg_quality));
   ImageFileOptions eight_bits = options;
   eight_bits.png_bits = 8;
   const DisplayRows display(image, file, eight_bits, 3);

@@ -125,7 +125,8 @@ void write_head(const Write& write, const scene::Image& image, int bits, int cha
 void encode(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options,
             const Write& write) {
   if (options.png_bits != 8 && options.png_bits != 16)
-    throw scene::bad_input(fmt::format("{}: {} bits a channel; a .png has 8 or 16", file.string(), options.png_bits));
+    throw scene::bad_input(
+        fmt::format("{}: {} bits per channel are not supported; a .png has 8 or 16", file.string(), options.png_bits));
   const int channels = options.background ? 3 : 4;
   const DisplayRows display(image, file, options, channels);
   std::vector<Strip> strips = make_strips(display, image.size.height, options.threads);

@@ -107,7 +107,8 @@ bool has_tiff() { return true; }
 
 void write_tiff(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   if (options.png_bits != 8 && options.png_bits != 16)
-    throw scene::bad_input(fmt::format("{}: {} bits a channel; a .tif has 8 or 16", file.string(), options.png_bits));
+    throw scene::bad_input(
+        fmt::format("{}: {} bits per channel are not supported; a .tif has 8 or 16", file.string(), options.png_bits));
   Target target(file);
   const int channels = options.background ? 3 : 4, height = image.size.height;
   const DisplayRows display(image, file, options, channels, DisplayRows::Order::little);

@@ -38,9 +38,9 @@ void add_fields_of_image(const OpenedAmrBlock& block, cells::CellBlock& fields, 
   for (std::size_t a = 0; a < 3; ++a) {
     const std::int64_t first = part.extent[2 * a], last = part.extent[2 * a + 1];
     if (first < INT32_MIN || last > INT32_MAX || last < first)
-      throw scene::bad_input(
-          fmt::format("{}: its points are those from {} to {} along {}; it is damaged, write it again", source, first,
-                      last, "xyz"[a]));
+      throw scene::bad_input(fmt::format(
+          "{}: its point indices run from {} to {} along {}, which is impossible; the file is damaged, write it again",
+          source, first, last, "xyz"[a]));
     cells[a] = static_cast<std::uint64_t>(std::max<std::int64_t>(last - first, 1));
     points[a] = static_cast<std::uint64_t>(last - first + 1);
   }
@@ -58,7 +58,7 @@ cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& sourc
   else
     add_fields_of_image(block, fields, source);
   if (fields.fields.empty())  // the sizes of fields bound the extent by the size of the file
-    throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with one", source));
+    throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with the same fields", source));
   return fields;
 }
 

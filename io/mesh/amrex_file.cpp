@@ -151,7 +151,7 @@ class PlotFile {
     std::string_view line = std::string_view(beginning).substr(0, beginning.find('\n'));
     const std::uint64_t begin = fab.offset + line.size() + 1;
     if (!line.starts_with("FAB "))
-      throw refuse("no values begin there with FAB; the file is truncated or damaged, write it again");
+      throw refuse("the values there do not begin with FAB; the file is truncated or damaged, write it again");
     line.remove_prefix(4);
     const auto* const format = std::find_if(formats.begin(), formats.end(),
                                             [&](const NumberFormat& known) { return line.starts_with(known.words); });
@@ -162,23 +162,23 @@ class PlotFile {
     std::size_t fields = 0;
     fab.stored = parse_amrex_fab(line, fields, fmt::format("{}: at byte {}", file.string(), fab.offset));
     if (fields != header_.fields.size())
-      throw refuse(
-          fmt::format("{} fields are there, the Header has {}; write it again", fields, header_.fields.size()));
+      throw refuse(fmt::format("it has {} fields there, but the Header lists {}; write it again", fields,
+                               header_.fields.size()));
     std::uint64_t bytes = format->bytes * fields;
     for (std::size_t a = 0; a < 3; ++a) {
       if (fab.stored.low[a] > fab.box.low[a] || fab.stored.high[a] < fab.box.high[a])
         throw refuse(
-            fmt::format("its values are those of cells {} to {} along {}, its box has cells {} to {}; write "
-                        "it again",
+            fmt::format("its values belong to cells {} to {} along {}, but its box has cells {} to {}; write it again",
                         fab.stored.low[a], fab.stored.high[a], "xyz"[a], fab.box.low[a], fab.box.high[a]));
       if (__builtin_mul_overflow(bytes, static_cast<std::uint64_t>(fab.stored.cells(a)), &bytes)) bytes = UINT64_MAX;
     }
     if (begin > size || bytes > size - begin)
-      throw refuse(fmt::format("{} bytes of values begin there, the file has {} bytes; it is truncated, write it again",
-                               bytes, size));
+      throw refuse(
+          fmt::format("{} bytes of values begin there, but the file has only {} bytes; it is truncated, write it again",
+                      bytes, size));
     bytes_used_ += bytes;
     if (bytes_used_ > bytes_there_)  // bounds the memory per box by the size of the files
-      throw refuse("boxes share their values; it is damaged, write it again");
+      throw refuse("several boxes refer to the same values; the file is damaged, write it again");
     return {file, begin, format->bytes, scene::is_swapped(format->big_endian), fab.box, fab.stored};
   }
 

@@ -33,7 +33,7 @@ class Words {
     const std::string_view text = word(what);
     const auto number = number_of<std::int64_t>(text);
     if (!number || *number < low || *number > high)
-      fail(fmt::format("{} is {}, a whole number from {} to {} is wanted; write it again", what, quote(text), low,
+      fail(fmt::format("{} is {}, but must be a whole number from {} to {}; write it again", what, quote(text), low,
                        high));
     return *number;
   }
@@ -41,7 +41,7 @@ class Words {
   double number(const char* what) {
     const std::string_view text = word(what);
     const std::optional<double> number = parse_number(text);
-    if (!number) fail(fmt::format("{} is {}, a number is wanted; write it again", what, quote(text)));
+    if (!number) fail(fmt::format("{} is {}, but must be a number; write it again", what, quote(text)));
     return *number;
   }
 
@@ -53,7 +53,7 @@ class Words {
     for (std::int64_t& n : box.high) n = count(what, -most_cells, most_cells);
     for (int axis = 0; axis < 3; ++axis)
       if (count(what, 0, 1) != 0)
-        fail(fmt::format("{} has values at nodes, which are not read; write values of cells", what));
+        fail(fmt::format("{} has values at nodes, which are not supported; write values at cells", what));
     for (std::size_t a = 0; a < 3; ++a)
       if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write it again", what));
     return box;
@@ -90,8 +90,8 @@ AmrexHeader parse_amrex_header(std::string_view text, const std::string& source)
     for (double& spacing : level.spacing) spacing = words.number("a level's cell size");
   if (const auto system = words.count("the coordinate system", 0, 2); system != 0)
     throw scene::bad_input(
-        fmt::format("{}: its coordinates are {}, only Cartesian ones are read; give another data set", source,
-                    system == 1 ? "cylindrical" : "spherical"));
+        fmt::format("{}: its coordinates are {}, but only Cartesian coordinates are supported; give another data set",
+                    source, system == 1 ? "cylindrical" : "spherical"));
   words.word("the width of the boundary");
   for (AmrexLevel& level : header.levels) {
     words.word("a level's number");
@@ -107,21 +107,21 @@ AmrexHeader parse_amrex_header(std::string_view text, const std::string& source)
 std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t fields, const std::string& source) {
   Words words(text, source);
   if (const auto version = words.count("the version", 0, 1000); version != 1)
-    words.fail(fmt::format("its values have no lines of their own (version {}); write it with vismf.headerversion = 1",
-                           version));
+    words.fail(fmt::format(
+        "its header does not list the ranges of values (version {}); write it with vismf.headerversion = 1", version));
   words.word("how values are spread over files");
   if (const auto stored = words.count("the number of fields", 0, most_fields);
       stored != static_cast<std::int64_t>(fields))
-    words.fail(fmt::format("it has {} fields, the Header has {}; write it again", stored, fields));
+    words.fail(fmt::format("it has {} fields, but the Header lists {}; write it again", stored, fields));
   words.word("the number of cells around a box");
   const auto boxes = words.count("the number of boxes", 1, most_boxes);
-  words.word("the number after that of boxes");
+  words.word("the number after the number of boxes");
   std::vector<AmrexFab> fabs;  // grows as boxes are parsed, not by the stated count
   for (std::int64_t n = 0; n < boxes; ++n) fabs.emplace_back().box = words.box("a box");
   words.count("the number of boxes' values", boxes, boxes);
   for (AmrexFab& fab : fabs) {
     if (const std::string_view key = words.word("FabOnDisk:"); key != "FabOnDisk:")
-      words.fail(fmt::format("{} where FabOnDisk: is wanted; write it again", quote(key)));
+      words.fail(fmt::format("it has {} where FabOnDisk: is required; write it again", quote(key)));
     fab.file = words.word("a file's name");
     fab.offset = static_cast<std::uint64_t>(words.count("where values begin", 0, std::int64_t{1} << 50));
   }

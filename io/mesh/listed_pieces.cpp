@@ -41,7 +41,7 @@ void require_listed(const ListedPiece& piece) {
   std::error_code unknown;
   if (!std::filesystem::exists(piece.file, unknown) && !unknown)
     throw scene::bad_input(
-        fmt::format("{}: there is no such file, which {} lists; put it there", piece.file.string(), piece.list));
+        fmt::format("{}: there is no such file, but {} lists it; put the file there", piece.file.string(), piece.list));
 }
 
 void add_pieces_of_whole(const std::filesystem::path& file, const std::string& block, PieceList& list) {
@@ -103,11 +103,11 @@ void require_piece(const ListedPiece& piece) {
   if (type.empty()) {
     require_no_utf16(beginning, source);
     throw scene::bad_input(fmt::format(
-        "{}: it is a piece of {} and does not begin as a VTK XML file does; write it again", source, piece.list));
+        "{}: it is a piece of {}, but does not begin like a VTK XML file; write it again", source, piece.list));
   }
   if (type != "UnstructuredGrid")
     throw scene::bad_input(
-        fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both again", source,
+        fmt::format("{}: it is a piece of {}, but its type is '{}', not 'UnstructuredGrid'; write both again", source,
                     piece.list, type));
 }
 
@@ -129,8 +129,8 @@ PieceList piece_list(const InputFile& input, const cells::BlockChoice& choice, b
     add_blocks(file, choice, list);
     if (choice.empty() && list.block_names.empty() && !list.surface_names.empty())
       throw scene::bad_input(
-          fmt::format("{}: it lists surfaces only ({}), without volume cells; give a mesh, in which `surface` draws "
-                      "these files, or one of the files itself, which is filled with cells if it is closed",
+          fmt::format("{}: it lists surfaces only ({}), without volume cells; give a mesh and draw these files in it "
+                      "with `surface`, or give one of the files, which is filled with cells if it is closed",
                       file.string(), list.surface_names.front() + (list.surface_names.size() > 1 ? ", ..." : "")));
     return list;
   }

@@ -60,15 +60,16 @@ std::vector<cells::CellBlock> checked_blocks(const cells::CellBlock& block, cons
         "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source));
   for (const std::uint32_t node : block.connectivity)
     if (node >= block.positions.size())
-      throw scene::bad_input(fmt::format("{}: a cell uses point {} of {}; the file is damaged, export it again", source,
-                                         std::uint64_t{node} + 1, block.positions.size()));
+      throw scene::bad_input(
+          fmt::format("{}: a cell uses point {}, but the file has only {} points; the file is damaged, export it again",
+                      source, std::uint64_t{node} + 1, block.positions.size()));
   return cells::blocks_by_number(block, references, "reference", "Reference");
 }
 
 void require_space(std::int64_t dimension, const std::string& source) {
   if (dimension != 3)
     throw scene::bad_input(
-        fmt::format("{}: it has {} dimensions, and a volume has three; give one", source, dimension));
+        fmt::format("{}: it has {} dimensions, but a volume has three; give a volume", source, dimension));
 }
 
 class MeditBinary {
@@ -84,7 +85,7 @@ class MeditBinary {
       const std::size_t begin = at_;
       const auto code = read<std::int32_t>("keyword");
       const std::int64_t next = version_ >= 3 ? read<std::int64_t>("place") : read<std::int32_t>("place");
-      if (code < 1 || code > last_known_code) fail(begin, fmt::format("there is a keyword {}", code));
+      if (code < 1 || code > last_known_code) fail(begin, fmt::format("it has an unknown keyword {}", code));
       read_keyword(code, begin);
       if (next == 0 || code == code_end) break;
       if (next < 0 || static_cast<std::uint64_t>(next) <= begin || static_cast<std::uint64_t>(next) > bytes_.size())
@@ -103,7 +104,7 @@ class MeditBinary {
     for (const auto& [unread, words] : unread_cells)
       if (unread == code && whole("count") > 0)
         throw scene::bad_input(
-            fmt::format("{}: it has {}, which are not read; export first-order cells", source_, words));
+            fmt::format("{}: it has {}, which are not supported; export first-order cells", source_, words));
   }
 
   void read_points(std::size_t begin) {
@@ -140,7 +141,7 @@ class MeditBinary {
   std::size_t read_count(std::size_t bytes_each, const char* what, std::size_t begin) {
     const std::int64_t count = whole("count");
     if (count < 0 || static_cast<std::uint64_t>(count) > (bytes_.size() - at_) / bytes_each)
-      fail(begin, fmt::format("there are {} {}, more than the file can hold", count, what));
+      fail(begin, fmt::format("it states {} {}, more than a file of this size can contain", count, what));
     return static_cast<std::size_t>(count);
   }
 
@@ -178,7 +179,7 @@ class MeditText {
     std::string_view list;  // name of the list that was just read
     for (std::string_view word = scanner_.word(); !word.empty() && word != "End"; word = scanner_.word()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
-        fail(fmt::format("the number '{}' follows the last of the {}: each has more numbers than this keyword allows",
+        fail(fmt::format("the number '{}' follows the last of the {}: they have more numbers than this keyword allows",
                          word.substr(0, 40), list));
       list = {};
       if (word == "Dimension") require_space(whole("a dimension"), source_);
@@ -186,7 +187,7 @@ class MeditText {
       for (const MeditCells& cells : medit_cells)
         if (word == cells.word) read_cells(cells), list = word;
       if (is_unread(word) && whole("a count") > 0)
-        scanner_.fail(fmt::format("its {} are not read; export first-order cells", word));
+        scanner_.fail(fmt::format("its {} are not supported; export first-order cells", word));
       // The numbers of other keywords are skipped one by one.
     }
     return checked_blocks(block_, references_, source_);
@@ -233,7 +234,7 @@ class MeditText {
   std::size_t read_count(std::size_t bytes_each, const char* what) {
     const std::int64_t count = whole("a count");
     if (count < 0 || static_cast<std::uint64_t>(count) > scanner_.rest().size() / bytes_each + 1)
-      fail(fmt::format("there are {} {}, more than the file can hold", count, what));
+      fail(fmt::format("it states {} {}, more than a file of this size can contain", count, what));
     return static_cast<std::size_t>(count);
   }
 
@@ -264,13 +265,13 @@ class MeditText {
 std::vector<cells::CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!begins_as_medit_binary(text.substr(0, 24)))
-    throw scene::bad_input(fmt::format("{}: it does not begin as a binary Medit mesh does; check what it is", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin like a binary Medit mesh; check what it is", source));
   return MeditBinary(bytes, source).blocks();
 }
 
 std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std::string& source) {
   if (!begins_as_medit_text(text.substr(0, 128)))
-    throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin like a Medit mesh; check what it is", source));
   return MeditText(text, source).blocks();
 }
 

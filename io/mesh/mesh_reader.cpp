@@ -71,7 +71,8 @@ cells::MeshBlocks read_pieces(std::span<const InputFile> files, const MeshOption
     if (files.size() == 1) return read;
     if (!read.fields.empty())
       throw scene::bad_input(
-          fmt::format("{}: a mesh with levels is read by itself only; give it alone", printable(file.name)));
+          fmt::format("{}: a mesh with levels of refinement cannot be combined with other files; give it alone",
+                      printable(file.name)));
     if (all.format.empty()) all.format = fmt::format("{} files: {}", files.size(), read.format);
     all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
     for (cells::CellBlock& block : read.blocks) {
@@ -106,10 +107,11 @@ void require_mesh(const InputFile& file) {
   const Format* const format = file.format;
   if (format == nullptr)
     throw scene::bad_input(fmt::format(
-        "{}: it neither begins as a file of a known format nor has a name of one; `tessera formats` lists them",
+        "{}: neither its first bytes nor its name are those of a known format; `tessera formats` lists them",
         file.name));
   if (format->holds == FileHolds::not_read)
-    throw scene::bad_input(fmt::format("{}: its format ({}) is not read; {}", file.name, format->name, format->remark));
+    throw scene::bad_input(
+        fmt::format("{}: its format ({}) is not supported; {}", file.name, format->name, format->remark));
   if (format->holds == FileHolds::series)
     throw scene::bad_input(
         fmt::format("{}: it is a time series, which only render and serve accept; give one of its meshes", file.name));

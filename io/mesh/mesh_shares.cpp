@@ -72,9 +72,9 @@ cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files
   for (std::uint64_t k = cells::first_of_part(files.size(), part, parts); k < last; ++k) {
     const char* const reader = exodus_reader({read_beginning(files[k], 4096)});
     if (reader == nullptr)
-      throw scene::bad_input(
-          fmt::format("{}: it is a part of a mesh in {} Exodus files, and none itself; write it again",
-                      files[k].string(), files.size()));
+      throw scene::bad_input(fmt::format(
+          "{}: it states that it is one of {} Exodus files of a mesh, but is not an Exodus file; write it again",
+          files[k].string(), files.size()));
     add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
   }
   return result;
@@ -96,8 +96,8 @@ std::vector<std::filesystem::path> exodus_files(const InputFile& input) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(all.back(), unknown))
       throw scene::bad_input(
-          fmt::format("{}: it is one of {} files of a mesh, and {} is missing; put it next to it, or "
-                      "rename this one to see it alone",
+          fmt::format("{}: it is one of {} files of a mesh, and {} is missing; put the missing file next to this one, "
+                      "or rename this one to see it alone",
                       file.string(), files, all.back().filename().string()));
   }
   return all;
@@ -120,8 +120,8 @@ cells::MeshBlocks read_share(const InputFile& file, const ReadOptions& options, 
   request["parts"] = parts;
   const ForeignFile opened = open_foreign(file, std::move(request), options.progress);
   if (opened.contents.has_levels)
-    throw scene::bad_input(
-        fmt::format("{}: it is named as CGNS and holds a mesh of several levels; give it another name", file.name));
+    throw scene::bad_input(fmt::format(
+        "{}: it has the name of a CGNS file, but is a mesh of several levels; give it another name", file.name));
   cells::MeshBlocks result;
   result.format = opened.contents.format;
   add_blocks(opened, result, "");

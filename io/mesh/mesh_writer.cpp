@@ -49,7 +49,7 @@ void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& fil
   const std::string target = file.string();
   if (mesh.association == scene::Association::cell)
     throw scene::bad_input(fmt::format(
-        "{}: .tets holds point data only and '{}' is cell data; write .vtu, or smooth it", target, mesh.field_name));
+        "{}: .tets stores point data only, but '{}' is cell data; write .vtu, or smooth it", target, mesh.field_name));
   if (mesh.positions.size() > static_cast<std::size_t>(INT32_MAX))
     throw scene::bad_input(fmt::format("{}: {} points are too many for the int32 indices of .tets; write .vtu", target,
                                        mesh.positions.size()));

@@ -96,8 +96,8 @@ void NastranEntry::replicate(const NastranEntry& before) {
     const std::string written = fields_[k];
     if (!written.starts_with('=') && !written.starts_with('*')) continue;
     if (before.name_ != name_)
-      refuse(fmt::format("{} of {} has no {} before it to replicate; write its number", scene::quote(written), name_,
-                         name_));
+      refuse(fmt::format("{} of {} has no {} before it that it could repeat; write a number", scene::quote(written),
+                         name_, name_));
     if (written == "=") {
       fields_[k] = copy(k);
     } else if (written == "==") {  // repeats fields to the end of the line; in the last line, of the entry
@@ -107,7 +107,7 @@ void NastranEntry::replicate(const NastranEntry& before) {
     } else {
       fields_[k] = without_brackets(std::string_view(written).substr(1));
       if (written[0] == '=' || fields_[k].empty())
-        refuse(fmt::format("{} of {} is not a replication; correct it", scene::quote(written), name_));
+        refuse(fmt::format("{} of {} is not a valid replication; correct it", scene::quote(written), name_));
       const auto number = number_of<std::int64_t>(before.is_blank(k) ? "0" : before.fields_[k]);
       const auto more = number_of<std::int64_t>(fields_[k]);
       std::int64_t sum = 0;
@@ -131,7 +131,7 @@ class NastranDeck {
     if (!seen_.insert(has_no_path ? file.string() : path.string()).second) return;
     if (++depth_ > most_deep)
       throw scene::bad_input(
-          fmt::format("{}: more than {} files include each other; give one file", file.string(), most_deep));
+          fmt::format("{}: more than {} files include one another; write them as one file", file.string(), most_deep));
     const WholeFile mapped(file);
     std::string_view text = mapped.text();
     if (text.substr(0, 4096).find('\0') != std::string_view::npos)
@@ -231,7 +231,7 @@ class NastranDeck {
     for (const char* part : {"SUPER", "AUXMODEL", "MODULE"})
       if (begins_part(line, part))
         throw scene::bad_input(
-            fmt::format("{}: line {}: BEGIN {} begins a part whose numbers are its own, which is not read; give each "
+            fmt::format("{}: line {}: BEGIN {} begins a part with its own numbering, which is not supported; give each "
                         "part as a file of its own",
                         file.string(), number, part));
     if (has_words(line, "BEGIN", "BULK")) {

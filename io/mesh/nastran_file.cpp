@@ -77,7 +77,7 @@ struct DeckElements {
       const std::int64_t node = entry.whole_number(2 + k).value_or(0);
       if (k < kind->corners && node == 0)
         entry.refuse(
-            fmt::format("{} has {} corners, and number {} is blank; correct it", entry.name(), kind->corners, k + 1));
+            fmt::format("{} needs {} corners, but corner {} is blank; correct it", entry.name(), kind->corners, k + 1));
       nodes.push_back(node);
     }
   }
@@ -113,10 +113,9 @@ class NastranCells {
   [[nodiscard]] std::uint32_t point(std::int64_t grid, std::int64_t element) const {
     const std::optional<std::uint32_t> found = systems_.point(grid);
     if (!found)
-      throw scene::bad_input(
-          fmt::format("{}: element {} uses GRID {}, which the file does not have; add it, or what "
-                      "includes it",
-                      source_, element, grid));
+      throw scene::bad_input(fmt::format(
+          "{}: element {} uses GRID {}, which the file does not have; add it, or add the file that contains it",
+          source_, element, grid));
     return *found;
   }
 

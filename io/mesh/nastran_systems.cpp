@@ -69,7 +69,7 @@ void NastranSystems::add_point(const NastranEntry& entry) {
   Point point{.id = *id, .system = entry.whole_number(1).value_or(0), .has_system = !entry.is_blank(1)};
   for (std::size_t a = 0; a < 3; ++a) point.given[static_cast<int>(a)] = entry.real(2 + a);
   if (points_.size() >= std::numeric_limits<std::uint32_t>::max() - 1)
-    entry.refuse("it is one of 2^32 points or more; split the file");
+    entry.refuse("the file has 2^32 points or more; split it");
   points_.push_back(point);
 }
 
@@ -91,14 +91,14 @@ const NastranSystems::System& NastranSystems::system(std::int64_t id, const std:
   if (found == systems_.end()) {
     const auto unread = unread_.find(id);
     throw unread == unread_.end()
-        ? refuse("which the file does not have; add it, or what includes it")
-        : refuse(fmt::format("a {}, which is not read; have the points written in the basic system",
+        ? refuse("which the file does not have; add it, or add the file that contains it")
+        : refuse(fmt::format("a {}, which is not supported; write the points in the basic system",
                              scene::quote(unread->second)));
   }
   System& system = found->second;
   if (system.progress == Progress::done) return system;
   if (system.progress == Progress::begun || depth_ >= most_systems_deep)
-    throw refuse("which leads back to itself, or through a thousand others; correct it");
+    throw refuse("which refers back to itself, or refers to a chain of a thousand others; correct it");
   system.progress = Progress::begun;
   ++depth_;
   const std::string own = fmt::format("coordinate system {}", id);
@@ -144,7 +144,7 @@ const glm::dvec3& NastranSystems::place(std::size_t point) {
   if (p.progress == Progress::done) return positions_[point];
   if (p.progress == Progress::begun)
     throw scene::bad_input(
-        fmt::format("{}: GRID {} is in a coordinate system that it makes itself; correct it", source_, p.id));
+        fmt::format("{}: GRID {} is in a coordinate system that it defines itself; correct it", source_, p.id));
   p.progress = Progress::begun;
   positions_[point] = in_basic(p.has_system ? p.system : default_system_, p.given, fmt::format("GRID {}", p.id));
   p.progress = Progress::done;

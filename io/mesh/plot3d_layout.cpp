@@ -130,10 +130,10 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
   const std::uint64_t size = require_file(grid_file);
   if (is_text(grid_file)) {
     if (const auto layout = plot3d_text_layout(WholeFile(grid_file).text(), grid_file.string())) return *layout;
-    throw scene::bad_input(fmt::format(
-        "{}: no layout of a three-dimensional PLOT3D grid gives the numbers that are in it; it is truncated "
-        "or of another kind (the solution goes with `q`)",
-        grid_file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: its numbers fit no layout of a three-dimensional PLOT3D grid; it is truncated or of another "
+                    "kind (give a solution file with `q`)",
+                    grid_file.string()));
   }
   std::ifstream in(grid_file, std::ios::binary);
   for (unsigned bits = 0; bits < 32; ++bits) {
@@ -141,13 +141,13 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
     if (grid_fits(in, size, layout)) return layout;
     if (layout.record_marks && grid_fits(in, size, layout, true))
       throw scene::bad_input(
-          fmt::format("{}: it has a record for each plane of a grid (/PLANES), which is not read; write each grid as "
-                      "one record (/WHOLE)",
+          fmt::format("{}: it has a record for each plane of a grid (/PLANES), which is not supported; write each grid "
+                      "as one record (/WHOLE)",
                       grid_file.string()));
   }
   throw scene::bad_input(
-      fmt::format("{}: no layout of a three-dimensional binary PLOT3D grid gives its {} bytes; it is "
-                  "truncated or of another kind (the solution goes with `q`)",
+      fmt::format("{}: no layout of a three-dimensional binary PLOT3D grid has {} bytes; it is truncated or of another "
+                  "kind (give a solution file with `q`)",
                   grid_file.string(), size));
 }
 
@@ -155,14 +155,14 @@ std::uint64_t check_plot3d_solution(const std::filesystem::path& q_file, const P
   const std::uint64_t size = require_file(q_file);
   if (layout.is_text) {
     if (is_text(q_file)) return check_plot3d_text_solution(WholeFile(q_file).text(), layout, q_file.string());
-    throw scene::bad_input(
-        fmt::format("{}: it is binary, and the grid file is text; give both in one form", q_file.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: it is binary, but the grid file is text; give both as text or both as binary", q_file.string()));
   }
   std::ifstream in(q_file, std::ios::binary);
   Walk walk(in, size, layout);
   if (walk.dimensions() != layout.grids || !walk.good)
     throw scene::bad_input(fmt::format(
-        "{}: its dimensions are not those of the grid file; give the solution of this grid", q_file.string()));
+        "{}: its dimensions differ from those of the grid file; give the solution for this grid", q_file.string()));
   const std::uint64_t number_bytes = layout.double_precision ? 8 : 4;
   for (const auto& n : layout.grids) {
     walk.record(4 * number_bytes);
@@ -170,8 +170,8 @@ std::uint64_t check_plot3d_solution(const std::filesystem::path& q_file, const P
   }
   if (!walk.good)
     throw scene::bad_input(
-        fmt::format("{}: {} bytes do not hold the 4 + 5 n numbers a grid of a PLOT3D solution; it is "
-                    "truncated or of another kind (function, OVERFLOW)",
+        fmt::format("{}: its {} bytes are not the 4 + 5 n numbers per grid of a PLOT3D solution; it is truncated or of "
+                    "another kind (function, OVERFLOW)",
                     q_file.string(), size));
   return walk.left();
 }

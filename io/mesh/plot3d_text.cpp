@@ -28,10 +28,10 @@ std::uint64_t count_numbers(std::string_view text, const std::string& source) {
     const std::string_view word = words.word();
     const std::size_t exponent = word.find_first_of("dD");
     if (word.find('*') != std::string_view::npos)
-      refuse(words, word, "is a repeated number, which VTK's reader does not support; write each");
+      refuse(words, word, "is a repetition of a number, which VTK's reader does not support; write each number");
     if (exponent != std::string_view::npos && number_of<double>(word.substr(0, exponent)))
       refuse(words, word, "has an exponent that VTK's reader does not support; write it with E");
-    refuse(words, word, "is not a number; PLOT3D in text is numbers alone");
+    refuse(words, word, "is not a number; a PLOT3D text file contains only numbers");
   }
   return count;
 }
@@ -75,7 +75,7 @@ void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, con
     const std::uint64_t points = points_of(grid);
     for (std::uint64_t k = 0; k < 4 * points; ++k)
       if (const std::string_view word = words.word(); k >= 3 * points && !number_of<std::int32_t>(word))
-        refuse(words, word, "is an IBLANK value and is not a whole number; correct it");
+        refuse(words, word, "is an IBLANK value, but not a whole number; correct it");
   }
 }
 
@@ -109,13 +109,14 @@ std::uint64_t check_plot3d_text_solution(std::string_view text, const Plot3dLayo
   TextScanner words = words_of(text, source);
   if (grids_of(words, layout.multi_grid, numbers) != layout.grids)
     throw scene::bad_input(
-        fmt::format("{}: its dimensions are not those of the grid file; give the solution of this grid", source));
+        fmt::format("{}: its dimensions differ from those of the grid file; give the solution for this grid", source));
   std::uint64_t needed = header_numbers(layout);
   for (const auto& grid : layout.grids) needed += 4 + 5 * points_of(grid);
   if (numbers < needed)
-    throw scene::bad_input(fmt::format(
-        "{}: it has {} of the {} numbers of a PLOT3D solution; it is truncated or of another kind (function, OVERFLOW)",
-        source, numbers, needed));
+    throw scene::bad_input(
+        fmt::format("{}: it has only {} of the {} numbers of a PLOT3D solution; it is truncated or of another kind "
+                    "(function, OVERFLOW)",
+                    source, numbers, needed));
   return numbers - needed;
 }
 

@@ -56,8 +56,9 @@ class PlyParser {
     for (std::size_t f = 0; f < result_.surface.facets.size(); ++f)
       for (const std::uint32_t v : result_.surface.facets[f].polygons.front())
         if (v >= points)
-          throw scene::bad_input(fmt::format("{}: face {} uses vertex {}, the file holds {}; write it again", source_,
-                                             f, static_cast<std::int64_t>(v), points));
+          throw scene::bad_input(
+              fmt::format("{}: face {} uses vertex {}, but the file has only {} vertices; write it again", source_, f,
+                          static_cast<std::int64_t>(v), points));
     return std::move(result_);
   }
 
@@ -88,7 +89,7 @@ class PlyParser {
       } else if (words[0] == "element" && words.size() == 3) {
         const auto count = number_of<std::uint64_t>(words[2]);
         if (!count || *count > scanner_.rest().size())
-          fail(fmt::format("it promises {} of element {}", scene::quote(words[2]), printable_ascii(words[1])));
+          fail(fmt::format("its header states {} of element {}", scene::quote(words[2]), printable_ascii(words[1])));
         elements_.push_back({std::string(words[1]), *count, {}});
       } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
         Property property;
@@ -101,7 +102,7 @@ class PlyParser {
         property.name = words.back();
         elements_.back().properties.push_back(std::move(property));
       } else {
-        fail("its header holds " + scene::quote(words[0]));
+        fail("its header has the unknown keyword " + scene::quote(words[0]));
       }
     }
     if (!has_format) fail("its header names no format");
@@ -128,7 +129,7 @@ class PlyParser {
     }
     if (vertex && (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)) fail("its vertices have no x, y and z");
     // A second list of vertices would make the attributes of the first list shorter than the list of points.
-    if (vertex && !result_.surface.points.empty()) fail("it holds two lists of vertices");
+    if (vertex && !result_.surface.points.empty()) fail("it has two lists of vertices");
     if (face && corners < 0) fail("its faces have no vertex_indices");
     for (std::uint64_t n = 0; n < element.count; ++n) {
       glm::dvec3 p(0);
@@ -151,7 +152,7 @@ class PlyParser {
   void read_list(const Property& property, bool wanted, std::uint64_t face) {
     const double length = number(*property.count);
     if (!(length >= 0) || length > static_cast<double>(scanner_.rest().size()))
-      fail(fmt::format("a list of element {} has the length {}", face, length));
+      fail(fmt::format("a list of element {} has the impossible length {}", face, length));
     cells::Polygon polygon;
     for (std::size_t k = 0; static_cast<double>(k) < length; ++k) {
       const double v = number(property.type);

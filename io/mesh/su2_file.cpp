@@ -65,7 +65,8 @@ class Lines {
   std::size_t count(const char* what, std::size_t least) {
     const auto n = number<std::uint64_t>(what);
     if (n > scanner_.rest().size() / least + 1)
-      fail(fmt::format("{} is {}, more than the file can hold; it is truncated, write it again", what, n));
+      fail(
+          fmt::format("{} is {}, more than a file of this size can contain; it is truncated, write it again", what, n));
     return static_cast<std::size_t>(n);
   }
 
@@ -95,7 +96,8 @@ void read_cells(Lines& lines, Zone& zone) {
     const auto type = lines.number<std::uint64_t>("cell type");
     const std::size_t nodes = nodes_of(type);
     if (nodes == 0 && nodes_of(type % 100) > 0)
-      lines.fail(fmt::format("{} is a cell of order {}, which is not read; have SU2 write .vtu", type, type / 100 + 1));
+      lines.fail(
+          fmt::format("{} is a cell of order {}, which is not supported; have SU2 write .vtu", type, type / 100 + 1));
     if (nodes == 0) lines.fail(fmt::format("{} is not a cell type of SU2 (3 5 9 10 12 13 14); correct it", type));
     for (std::size_t k = 0; k < nodes; ++k) {
       const auto point = lines.number<std::uint64_t>("point number");
@@ -132,8 +134,8 @@ void check(const Zone& zone, const std::string& source) {
     for (std::uint64_t k = zone.block.offsets[c]; k < zone.block.offsets[c + 1]; ++k)
       if (zone.block.connectivity[k] >= points)
         throw scene::bad_input(
-            fmt::format("{}: cell {} uses point {}, the file has {}; points count from 0, correct it", where, c,
-                        zone.block.connectivity[k], points));
+            fmt::format("{}: cell {} uses point {}, but the file has only {} points; points count from 0, correct it",
+                        where, c, zone.block.connectivity[k], points));
 }
 
 }  // namespace

@@ -93,7 +93,8 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& op
   const std::optional<double>& max_volume = options.max_volume;
   const std::string source = file.path.string();
   if (max_volume && !(*max_volume > 0))
-    throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
+    throw scene::bad_input(fmt::format("{}: the largest tet volume is {}, but must be positive; give a number above 0",
+                                       source, *max_volume));
   cells::MeshBlocks result;
   SurfaceFile read = file.format->read_surface(file);
   cells::Surface& surface = read.surface;
@@ -106,7 +107,8 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& op
   // If the orientations of facets are mixed, their volumes cancel, and only the bounding box is a useful estimate.
   if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);
   if (!(volume > 0))
-    throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
+    throw scene::bad_input(
+        fmt::format("{}: the surface is flat and encloses no volume; give a closed surface", source));
   const double largest = max_volume.value_or(volume / default_tets);
   if (max_volume) require_room(volume, largest, source);
   // Measured on spheres (readers/common/limits.cpp). A surface with fields is filled twice, the first time without
@@ -124,7 +126,7 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& op
                                                   std::move(filled.attributes[a])));
   block.fields.push_back(
       cells::field_of_values("depth", "double", scene::Association::point, 1, std::move(filled.depth)));
-  result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
+  result.notes.emplace_back("field 'depth' is the distance to the surface in world units");
   block.positions = std::move(filled.points);
   block.tets.resize(filled.tets.size() / 4);
   for (std::size_t k = 0; k < filled.tets.size(); ++k) block.tets[k / 4][k % 4] = filled.tets[k];

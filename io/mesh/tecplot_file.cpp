@@ -43,9 +43,9 @@ std::array<std::size_t, 3> tecplot_coordinates(const TecplotHeader& header, cons
     }
   if (found[0] + found[1] + found[2] == 3) return axes;
   if (header.variables.size() < 3)
-    throw scene::bad_input(
-        fmt::format("{}: it has {} variables, and a volume has the coordinates X, Y and Z; give a file with all three",
-                    source, header.variables.size()));
+    throw scene::bad_input(fmt::format(
+        "{}: it has {} variables, but a volume needs the coordinates X, Y and Z; give a file with all three", source,
+        header.variables.size()));
   return {0, 1, 2};
 }
 
@@ -126,7 +126,7 @@ class TecplotZones {
     const std::vector<double>& values = numbers(owner).values[variable];
     const std::size_t wanted = header_.zones[owner].of_cells[variable] ? own.elements : own.nodes;
     if (!own.is_passive[variable] && !header_.zones[owner].is_passive[variable] && values.size() != wanted)
-      refuse(own, fmt::format("the zone shares {} values of {} with zone {}, and needs {}; export the file again",
+      refuse(own, fmt::format("the zone shares {} values of {} with zone {}, but needs {}; export the file again",
                               values.size(), scene::quote(header_.variables[variable]), owner + 1, wanted));
     return values;
   }
@@ -206,9 +206,10 @@ void add_cells(const TecplotZone& zone, const TecplotNumbers& numbers, cells::Ce
   for (const auto* const nodes : {&numbers.connectivity, &numbers.face_nodes})
     for (const std::size_t node : *nodes)
       if (node < 1 || node > block.positions.size())
-        zones.refuse(zone, fmt::format("an element uses node {}, the zone has {}; nodes count from 1, export the file "
-                                       "again",
-                                       node, block.positions.size()));
+        zones.refuse(
+            zone,
+            fmt::format("an element uses node {}, but the zone has {} nodes; nodes count from 1, export the file again",
+                        node, block.positions.size()));
   if (zone.type == TecplotZoneType::polyhedra) return add_polyhedra(zone, numbers, block);
   const std::vector<std::size_t>& all = numbers.connectivity;
   if (zone.type == TecplotZoneType::tetrahedra) {
@@ -232,7 +233,7 @@ cells::CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const
   for (std::size_t a = 0; a < 3; ++a) {
     const std::vector<double>& values = zones.values(z, axes[a]);
     if (values.size() != zone.nodes)
-      zones.refuse(zone, fmt::format("the coordinate {} is not of the zone's nodes; write it NODAL",
+      zones.refuse(zone, fmt::format("the coordinate {} is not stored at the zone's nodes; write it as NODAL",
                                      scene::quote(header.variables[axes[a]])));
     for (std::size_t n = 0; n < zone.nodes; ++n) block.positions[n][static_cast<int>(a)] = values[n];
   }
@@ -263,8 +264,7 @@ TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std:
   const auto with_cells = static_cast<std::size_t>(std::ranges::count_if(header.zones, has_tecplot_cells));
   if (with_cells == 0)
     throw scene::bad_input(
-        fmt::format("{}: its {} zones hold no volume; give one with bricks, tetrahedra or three "
-                    "dimensions",
+        fmt::format("{}: its {} zones contain no volume cells; give one with bricks, tetrahedra or three dimensions",
                     source, header.zones.size()));
   const std::array<std::size_t, 3> axes = tecplot_coordinates(header, source);
   TecplotMesh mesh;

@@ -66,7 +66,7 @@ class TecplotWords {
       if (here() == '\\' && at_ + 1 < text_.size()) ++at_;
       words += here();
     }
-    if (at_end()) fail(first, "a quote does not end; end it, or export the file again");
+    if (at_end()) fail(first, "a quotation is not closed; close it, or export the file again");
     ++at_;
     return words;
   }
@@ -97,7 +97,7 @@ class TecplotWords {
       if (here() == '(') ++depth;
       if (here() == ')' && --depth == 0) break;
     }
-    if (at_end()) fail(value.at, fmt::format("the list of {} does not end; export the file again", scene::quote(key)));
+    if (at_end()) fail(value.at, fmt::format("the list of {} is not closed; export the file again", scene::quote(key)));
     value.text = text_.substr(first, at_++ - first);
     return value;
   }
@@ -177,8 +177,8 @@ class HeaderParser {
         const std::vector<std::string> earlier = std::exchange(header_.variables, {});
         read_variables();
         if (!header_.zones.empty() && header_.variables != earlier)
-          words_.fail(at,
-                      "VARIABLES names others than before the zones; write what has other variables to another file");
+          words_.fail(
+              at, "VARIABLES differs from the list before the zones; write zones with other variables to another file");
       } else if (key == "FILETYPE" && words_.skip_equals()) {
         if (upper_case(words_.value(key).text) == "SOLUTION")
           words_.fail(at, "it holds a solution without its grid; write FILETYPE=FULL");
@@ -225,7 +225,7 @@ class HeaderParser {
         return;
       const std::size_t at = words_.at();
       std::string name = is_quoted ? words_.quoted() : words_.word();
-      if (!is_quoted && name.empty()) words_.fail(at, "VARIABLES holds no name here; quote the names");
+      if (!is_quoted && name.empty()) words_.fail(at, "VARIABLES has no name here; put the names in quotation marks");
       header_.variables.push_back(std::move(name));
     }
   }
@@ -275,8 +275,8 @@ class HeaderParser {
   std::size_t zone_number(const std::string& key, const TecplotValue& value) const {
     const std::size_t number = value.text.empty() ? header_.zones.size() : count(key, value);
     if (number < 1 || number > header_.zones.size())
-      words_.fail(value.at, fmt::format("{} is zone {}, and {} zones come before; export the file again", key, number,
-                                        header_.zones.size()));
+      words_.fail(value.at, fmt::format("{} refers to zone {}, but only {} zones come before; export the file again",
+                                        key, number, header_.zones.size()));
     return number - 1;
   }
 
@@ -300,7 +300,7 @@ class HeaderParser {
     if (key == "CONNECTIVITYSHAREZONE") zone.connectivity_from = zone_number(key, value);
     if (key == "D") set_duplicates(zone, value);
     if (key == "NV")
-      words_.fail(value.at, "NV, which numbers the nodes by a variable, is not read; write them in order");
+      words_.fail(value.at, "NV, which numbers the nodes by a variable, is not supported; write them in order");
   }
 
   void set_type(TecplotZone& zone, const std::string& type, const TecplotValue& value) {
@@ -316,7 +316,7 @@ class HeaderParser {
              type == "LINESEG" || type == "TRIANGLE" || type == "QUADRILATERAL" || type == "POINT")
       zone.type = TecplotZoneType::lines_or_faces;
     else
-      words_.fail(value.at, fmt::format("a zone is of the type {}, which is not read; export bricks or tetrahedra",
+      words_.fail(value.at, fmt::format("a zone has the type {}, which is not supported; export bricks or tetrahedra",
                                         scene::quote(value.text)));
   }
 
@@ -327,13 +327,15 @@ class HeaderParser {
     else if (packing == "BLOCK" || packing == "FEBLOCK")
       zone.by_point = false;
     else
-      words_.fail(value.at, fmt::format("the packing is {}; write POINT or BLOCK", scene::quote(value.text)));
+      words_.fail(value.at,
+                  fmt::format("the packing {} is not supported; write POINT or BLOCK", scene::quote(value.text)));
   }
 
   std::vector<std::size_t> variables_in(std::string_view set, const TecplotValue& value) const {
     return numbers_of(set, header_.variables.size(), [&] {
-      words_.fail(value.at, fmt::format("{} names other variables than the 1 to {} of the file; export it again",
-                                        scene::quote(set), header_.variables.size()));
+      words_.fail(value.at,
+                  fmt::format("{} refers to variables other than the variables 1 to {} of the file; export it again",
+                              scene::quote(set), header_.variables.size()));
     });
   }
 
@@ -378,9 +380,11 @@ class HeaderParser {
     const double most = static_cast<double>(text_.size());
     const auto require = [&](double number, const char* what) {
       if (number > most)
-        words_.fail(zone.record_at, fmt::format("the zone has {} {}, more than the file can hold; it is truncated, "
-                                                "export it again",
-                                                number, what));
+        words_.fail(
+            zone.record_at,
+            fmt::format(
+                "the zone states {} {}, more than a file of this size can contain; it is truncated, export it again",
+                number, what));
     };
     if (is_ordered) {
       require(static_cast<double>(zone.i) * static_cast<double>(zone.j) * static_cast<double>(zone.k), "points");

@@ -57,9 +57,11 @@ class NumberStream {
 
   /// Throws for a count that exceeds the length of the text.
   [[noreturn]] void refuse_count(std::size_t count, const char* what) const {
-    words_.fail_at(zone_.record_at, fmt::format("the zone has {} {}, more than the file can hold; it is truncated, "
-                                                "export it again",
-                                                count, what));
+    words_.fail_at(
+        zone_.record_at,
+        fmt::format(
+            "the zone states {} {}, more than a file of this size can contain; it is truncated, export it again", count,
+            what));
   }
 
   /// Returns how many numbers the first line with numbers has.
@@ -119,11 +121,13 @@ void read_values(std::string_view text, const TecplotZone& zone, const std::stri
   if (total > most_values_a_byte * static_cast<double>(text.size()))
     fail_at(
         text, zone.record_at, source,
-        fmt::format("the zone has {} values, more than the file can hold; it is truncated, export it again", total));
+        fmt::format(
+            "the zone states {} values, more than a file of this size can contain; it is truncated, export it again",
+            total));
   const bool by_point = is_by_point(zone, numbers, own.size());
   for (const std::size_t v : own) {
     if (by_point && zone.of_cells[v])
-      fail_at(text, zone.record_at, source, "values of cells are by points; write DATAPACKING=BLOCK");
+      fail_at(text, zone.record_at, source, "values at cells cannot be packed by point; write DATAPACKING=BLOCK");
     read.values[v].resize(zone.of_cells[v] ? zone.elements : zone.nodes);
   }
   if (by_point) {

@@ -57,7 +57,7 @@ class Numbers {
   std::size_t count(const char* what, std::size_t least) {
     const auto n = need<std::int64_t>(what);
     if (n < 0 || static_cast<std::uint64_t>(n) > scanner_.rest().size() / least + 1)
-      fail(fmt::format("{} is {}, more than the file can hold", what, n));
+      fail(fmt::format("{} is {}, more than a file of this size can contain", what, n));
     return static_cast<std::size_t>(n);
   }
 
@@ -83,7 +83,7 @@ Nodes parse_nodes(Numbers& in) {
   if (dimensions != 3) in.fail(fmt::format("the points have {} coordinates, not 3", dimensions));
   const auto attributes = in.maybe<std::int64_t>().value_or(0), markers = in.maybe<std::int64_t>().value_or(0);
   if (attributes < 0 || attributes > 1000 || markers < 0 || markers > 1)
-    in.fail(fmt::format("{} attributes and {} markers a point are not possible", attributes, markers));
+    in.fail(fmt::format("{} attributes and {} markers per point are not supported", attributes, markers));
   nodes.points.reserve(n);
   nodes.attributes.resize(static_cast<std::size_t>(attributes));
   for (std::size_t v = 0; v < n; ++v) {
@@ -106,8 +106,8 @@ Nodes parse_nodes(Numbers& in) {
 std::uint32_t point_index(Numbers& in, std::int64_t given, const Nodes& nodes) {
   const std::int64_t v = given - nodes.first_index;
   if (v < 0 || v >= static_cast<std::int64_t>(nodes.points.size()))
-    in.fail(
-        fmt::format("point {} is used, there are {} numbered from {}", given, nodes.points.size(), nodes.first_index));
+    in.fail(fmt::format("point {} is used, but there are only {} points, numbered from {}", given, nodes.points.size(),
+                        nodes.first_index));
   return static_cast<std::uint32_t>(v);
 }
 
@@ -136,7 +136,7 @@ cells::CellBlock parse_node_ele(std::string_view node, std::string_view ele, con
   const std::size_t n = in.count("the number of tets", 10);
   const auto corners = in.maybe<std::int64_t>().value_or(4), attributes = in.maybe<std::int64_t>().value_or(0);
   if (corners != 4 && corners != 10) in.fail(fmt::format("tets have 4 or 10 nodes, not {}", corners));
-  if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes a tet are not possible", attributes));
+  if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes per tet are not supported", attributes));
   const auto nodes_each = static_cast<std::size_t>(corners);
   const cells::NodeOrder& order = *find_node_order(cells::NodeConvention::tetgen, cells::CurvedFamily::tet, 10);
   cells::CellBlock block;
@@ -188,7 +188,7 @@ cells::Surface parse_tetgen_surface(std::string_view text, bool smesh, std::stri
     }
     const std::size_t polygons = in.count("a facet's number of polygons", 2);
     const auto holes = in.maybe<std::int64_t>().value_or(0);
-    if (holes < 0) in.fail(fmt::format("{} holes in a facet", holes));
+    if (holes < 0) in.fail(fmt::format("a facet cannot have {} holes", holes));
     for (std::size_t k = 0; k < polygons; ++k) {
       in.need_line("a polygon");
       facet.polygons.push_back(read_polygon(in, nodes));

@@ -44,9 +44,9 @@ scene::Tet checked_tet(const Corners& corners, std::uint64_t tet, std::uint64_t 
   scene::Tet result{};
   for (std::size_t k = 0; k < 4; ++k) {
     if (corners[k] < 0 || static_cast<std::uint64_t>(corners[k]) >= vertices)
-      throw scene::bad_input(
-          fmt::format("{}: tet {} uses vertex {}, the file holds {}; write tets and vertices from one mesh", source,
-                      tet, corners[k], vertices));
+      throw scene::bad_input(fmt::format(
+          "{}: tet {} uses vertex {}, but the file has only {} vertices; write tets and vertices from one mesh", source,
+          tet, corners[k], vertices));
     result[k] = static_cast<std::uint32_t>(corners[k]);
   }
   return result;
@@ -90,13 +90,14 @@ TetsHeader tets_header(const TetsBytes& file, const std::string& source) {
   constexpr std::int64_t max_count = INT32_MAX;  // vertex indices are int32
   if (counts[0] < 0 || counts[1] < 0 || counts[0] > max_count || counts[1] > (INT64_MAX >> 5))
     throw scene::bad_input(
-        fmt::format("{}: the header promises {} vertices and {} tets; this is not a little-endian .tets file", source,
-                    counts[0], counts[1]));
+        fmt::format("{}: its header states {} vertices and {} tets, which is impossible; the file is not a "
+                    "little-endian .tets file",
+                    source, counts[0], counts[1]));
   const TetsHeader header{static_cast<std::uint64_t>(counts[0]), static_cast<std::uint64_t>(counts[1])};
   const std::uint64_t expected = corners_begin(header) + tet_bytes * header.tets;
   if (file.size != expected)
     throw scene::bad_input(fmt::format(
-        "{}: {} vertices and {} tets need {} bytes, the file has {}; {}", source, header.vertices, header.tets,
+        "{}: {} vertices and {} tets need {} bytes, but the file has {}; {}", source, header.vertices, header.tets,
         expected, file.size,
         file.size < expected ? "it is truncated, copy it again" : "it is another format or was written twice"));
   return header;

@@ -14,7 +14,7 @@ tessera::TriangleMesh read_triangles(const InputFile& file) {
   const std::string& source = file.name;
   if (file.format == nullptr || file.format->read_surface == nullptr)
     throw scene::bad_input(
-        fmt::format("{}: is not a surface of triangles; give a .ply, .stl, .vtp, .vtk, .poly or .smesh", source));
+        fmt::format("{}: it is not a surface of triangles; give a .ply, .stl, .vtp, .vtk, .poly or .smesh", source));
   SurfaceFile read = file.format->read_surface(file);
   tessera::TriangleMesh mesh;
   mesh.points = std::move(read.surface.points);
@@ -25,7 +25,7 @@ tessera::TriangleMesh read_triangles(const InputFile& file) {
   for (std::size_t f = 0; f < read.surface.facets.size(); ++f) {
     const cells::Facet& facet = read.surface.facets[f];
     if (!facet.holes.empty())
-      throw scene::bad_input(fmt::format("{}: facet {} has holes; divide it into polygons without", source, f));
+      throw scene::bad_input(fmt::format("{}: facet {} has holes; divide it into polygons without holes", source, f));
     for (const cells::Polygon& polygon : facet.polygons) cutter.cut(polygon, mesh.points, mesh.triangles);
   }
   if (mesh.triangles.empty())

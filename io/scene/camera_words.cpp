@@ -53,16 +53,16 @@ void CameraWords::set(std::string_view word, std::span<const double> numbers, co
     size_ = {pixel_count(numbers[0], at), pixel_count(numbers[1], at)};
   } else {
     throw scene::bad_input(
-        fmt::format("{}: {} is not a word of a camera; position, focal_point, view_up, parallel_scale, view_angle, "
-                    "clipping_range and size are",
+        fmt::format("{}: {} is not a setting of a camera; use position, focal_point, view_up, parallel_scale, "
+                    "view_angle, clipping_range or size",
                     at, quote(word)));
   }
 }
 
 CameraFile CameraWords::finish() const {
   const auto fault = [&](const char* what) { return scene::bad_input(place_ + ": " + what); };
-  if (!position_) throw fault("position is missing; give the eye's place, three numbers");
-  if (!focal_point_) throw fault("focal_point is missing, the camera has no direction; give the point it looks at");
+  if (!position_) throw fault("position is missing; give the position of the eye, three numbers");
+  if (!focal_point_) throw fault("focal_point is missing, so the camera has no direction; give the point it looks at");
   if (parallel_scale_ && view_angle_)
     throw fault(
         "parallel_scale and view_angle are both given; keep the first for an orthographic view, the second for "

@@ -39,8 +39,8 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   [[nodiscard]] TraceFile take() && {
     if (file_.spans.empty())
-      throw scene::bad_input(
-          fmt::format("{}: no span of Tessera in it; give a file that tessera render `timing` wrote", source_));
+      throw scene::bad_input(fmt::format(
+          "{}: it has no spans recorded by Tessera; give a file that tessera render wrote with `timing`", source_));
     return std::move(file_);
   }
 
@@ -157,7 +157,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   [[nodiscard]] double run_number(double value, double most) const {
     if (value >= 0 && value <= most && value == std::floor(value)) return value;
-    throw scene::bad_input(fmt::format("{}: otherData: {} is {}, it must be a whole number from 0 to {}; correct it",
+    throw scene::bad_input(fmt::format("{}: otherData: {} is {}, but must be a whole number from 0 to {}; correct it",
                                        source_, key_, value, most));
   }
 
@@ -188,7 +188,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
     else if (event_.role == "compositor")
       span.role = scene::TraceRole::compositor;
     else if (!event_.role.empty())
-      fail(fmt::format("role is {}, it must be projector or compositor", quote(event_.role)));
+      fail(fmt::format("role is {}, but must be projector or compositor", quote(event_.role)));
     span.stage = stage_number();
     file_.spans.push_back(span);
   }

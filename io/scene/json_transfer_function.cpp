@@ -43,7 +43,8 @@ std::vector<scene::Knot> knots_of(const json& list, const std::string& source) {
         throw fault(fmt::format("knot {}: its {} is not a finite number; write one", number, parts[i]));
       numbers[i] = item[i].get<double>();
       if (i > 0 && numbers[i] < 0)
-        throw fault(fmt::format("knot {}: its {} is {}; it must not be negative", number, parts[i], numbers[i]));
+        throw fault(fmt::format("knot {}: its {} is {}, but must not be negative; give 0 or more", number, parts[i],
+                                numbers[i]));
     }
     if (!knots.empty() && numbers[0] < knots.back().value)
       throw fault(fmt::format("knot {}: its value {} is below the one before it, {}; sort the knots by value", number,
@@ -100,7 +101,7 @@ std::string knots_json(const scene::TransferFunction& function) {
 
 std::string color_map_json(const scene::TransferFunction& function, double unit_distance, const std::string& name) {
   const auto knots = function.knots();
-  if (knots.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
+  if (knots.empty()) throw scene::bad_input("transfer function: it has no knots; give at least one");
   if (!(unit_distance > 0) || !std::isfinite(unit_distance))
     throw scene::bad_input(fmt::format("`unit_distance` {}: it must be a length above 0", unit_distance));
   // Half of the largest optical depth that an opacity can represent.

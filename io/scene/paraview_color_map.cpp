@@ -45,17 +45,16 @@ class MapReader {
   [[nodiscard]] std::vector<double> numbers(const char* key, std::size_t arity) const {
     const json* list = find(key);
     if (list == nullptr) return {};
-    if (!list->is_array()) throw fault(fmt::format("{} is not a list; it is {} numbers a point", key, arity));
+    if (!list->is_array()) throw fault(fmt::format("{} is not a list; write {} numbers per point", key, arity));
     if (list->size() % arity != 0)
-      throw fault(
-          fmt::format("{} holds {} numbers, which is not a multiple of {}; the list is cut or a number is missing", key,
-                      list->size(), arity));
+      throw fault(fmt::format("{} has {} numbers, which is not a multiple of {}; the list is cut off or lacks a number",
+                              key, list->size(), arity));
     std::vector<double> out;
     out.reserve(list->size());
     for (const json& item : *list) {
       if (!item.is_number() || !std::isfinite(item.get<double>()))
         throw fault(
-            fmt::format("{}: item {} is not a finite number; write {} numbers a point", key, out.size() + 1, arity));
+            fmt::format("{}: item {} is not a finite number; write {} numbers per point", key, out.size() + 1, arity));
       out.push_back(item.get<double>());
     }
     return out;
@@ -69,7 +68,7 @@ class MapReader {
       // Rounding slightly below 0 or above 1 is common in exported maps and is clamped. Much larger values are bytes,
       // which is another convention.
       if (std::max({color.x, color.y, color.z}) > 2)
-        throw fault(fmt::format("RGBPoints: point {} has the colour {} {} {}; components are 0 to 1, not bytes",
+        throw fault(fmt::format("RGBPoints: point {} has the colour {} {} {}; write components from 0 to 1, not bytes",
                                 i / 4 + 1, color.x, color.y, color.z));
       points.push_back({flat[i], glm::clamp(color, 0.0, 1.0)});
     }
@@ -154,7 +153,7 @@ std::string set_color_space(const std::string& name, const MapReader& reader, co
     curves.space = colormaps::ColorSpace::step;
   } else {
     throw reader.fault(fmt::format(
-        "ColorSpace {} is not known; RGB, HSV, Lab, CIELAB, LabCIEDE2000, Diverging, Step are", quote(name)));
+        "ColorSpace {} is unknown; use RGB, HSV, Lab, CIELAB, LabCIEDE2000, Diverging or Step", quote(name)));
   }
   return "";
 }
@@ -187,10 +186,11 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
                                                const colormaps::TransferFunctionOptions& options) {
   colormaps::check(options);
   if (root.is_array() && root.empty())
-    throw scene::bad_input(source + ": is an empty list; export a colour map into it");
+    throw scene::bad_input(source + ": is an empty list; export a colour map to this file");
   const json& map = root.is_array() ? root.front() : root;
   if (!map.is_object())
-    throw scene::bad_input(source + ": is not a colour map; a map is an object with RGBPoints, or a list of such");
+    throw scene::bad_input(source +
+                           ": is not a colour map; a map is an object with RGBPoints, or a list of such objects");
   const MapReader reader(map, source);
 
   std::vector<std::string> remarks;
@@ -201,7 +201,7 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   curves.colors = reader.colors();
   if (curves.colors.empty())
     throw reader.fault(reader.find("IndexedColors") != nullptr
-                           ? "has IndexedColors only, colours of categories; give a continuous map with RGBPoints"
+                           ? "has only IndexedColors, the colours of categories; give a continuous map with RGBPoints"
                            : "has no RGBPoints; export the map from ParaView's colour map editor");
   if (const std::string remark = set_color_space(reader.text("ColorSpace", "RGB"), reader, curves); !remark.empty())
     remarks.push_back(remark);
@@ -218,10 +218,10 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   const std::array<double, 2> spanned = stretches ? options.spanned() : color_range;
   std::vector<std::string> warnings;
   if (off)
-    warnings.push_back(fmt::format(
-        "the transfer function's {:g} to {:g} would show almost nothing of the field's {:.6g} to {:.6g}: it is taken "
-        "for a preset and stretched over the field; `range` sets another range",
-        color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
+    warnings.push_back(
+        fmt::format("the transfer function's {:g} to {:g} would show almost nothing of the field's {:.6g} to {:.6g}: "
+                    "it is used like a preset and stretched over the field's range; `range` sets another range",
+                    color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
   if (stretches) {
     remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
     stretch(curves.colors, color_range, spanned, [&] {
@@ -230,7 +230,8 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
     });
   } else if (options.field_range[1] < color_range[0] || options.field_range[0] > color_range[1]) {
     remarks.push_back(
-        fmt::format("the field's {:.6g} to {:.6g} is outside its {:.6g} to {:.6g}: `rescale` stretches it",
+        fmt::format("the field's range, {:.6g} to {:.6g}, is outside the transfer function's range, {:.6g} to {:.6g}: "
+                    "`rescale` stretches the transfer function",
                     options.field_range[0], options.field_range[1], color_range[0], color_range[1]));
   }
   if (!has_opacities) curves.opacities = colormaps::opacity_ramp();

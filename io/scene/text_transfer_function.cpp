@@ -38,7 +38,8 @@ colormaps::LoadedTransferFunction loaded_knots(std::vector<scene::Knot> knots, c
   std::string name = source;
   if (options.unit_distance) name += " (extinctions as given; `unit_distance` does not apply)";
   if (!options.opacity_points.empty())
-    throw scene::bad_input(source + ": holds extinctions, which `opacity_points` cannot replace; leave it out");
+    throw scene::bad_input(source +
+                           ": contains extinctions, which `opacity_points` cannot replace; leave `opacity_points` out");
   if (options.rescale || options.range) name += rescale(knots, options.spanned());
   return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
 }
@@ -56,7 +57,7 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
       const std::string_view word = words[i];
       if (word.find(',') != std::string_view::npos)
         lines.fail(
-            fmt::format("{} has a comma; separate numbers by blanks and write decimals with a point", quote(word)));
+            fmt::format("{} has a comma; separate numbers with spaces and write decimals with a point", quote(word)));
       const auto number = parse_number(word);
       if (!number)
         lines.fail(fmt::format("{} is not a finite number; each line is `value r g b extinction`", quote(word)));
@@ -72,8 +73,7 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
                              knots.back().value));
     knots.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4]});
   }
-  if (knots.empty())
-    throw scene::bad_input(source + ": holds no knot; give at least one line `value r g b extinction`");
+  if (knots.empty()) throw scene::bad_input(source + ": has no knots; give at least one line `value r g b extinction`");
   return loaded_knots(std::move(knots), source, options);
 }
 

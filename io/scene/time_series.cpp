@@ -77,7 +77,7 @@ std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pat
     throw scene::bad_input(
         fmt::format("{}: the directory cannot be listed: {}; check its name", input.string(), error.message()));
   if (found.empty())
-    throw scene::bad_input(fmt::format("{}: no file has such a name; it would be like {}", input.string(),
+    throw scene::bad_input(fmt::format("{}: no file has a name of this pattern, which would be like {}", input.string(),
                                        fmt::format("{}{:0{}}{}", pattern.before, 1, pattern.width, pattern.after)));
   std::sort(found.begin(), found.end());
   std::vector<TimeStep> steps;

@@ -40,8 +40,8 @@ inline scene::Error damaged(const std::filesystem::path& file, const std::string
 /// Throws Error(bad_input) if a time step is requested from a file without time steps.
 inline void require_no_time_step(std::optional<std::size_t> time_step, const std::string& source) {
   if (time_step.value_or(0) > 0)
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *time_step));
+    throw scene::bad_input(fmt::format(
+        "{}: there is no time step {}, because the file has no time steps; leave `time_step` out", source, *time_step));
 }
 
 }  // namespace tessera::io

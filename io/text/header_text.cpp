@@ -61,8 +61,8 @@ std::filesystem::path header_path(std::string_view text, const std::filesystem::
   if (is_inflated(path)) require_uncompressed(file);
   // An empty name would denote the directory itself.
   if (!is_name || !std::filesystem::exists(path, failed) || std::filesystem::is_directory(path, failed))
-    throw scene::bad_input(fmt::format("{}: {} is {}, and there is no such file; put the file it names there",
-                                       file.string(), what, quote(text)));
+    throw scene::bad_input(
+        fmt::format("{}: {} is {}, but there is no such file; put the file there", file.string(), what, quote(text)));
   return path;
 }
 
@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> header_slices(std::string_view text, std::str
   std::vector<std::filesystem::path> slices;
   const auto add = [&](std::string_view name) {
     if (slices.size() >= most)
-      throw damaged(file, fmt::format("{} names more files than the {} slices there are", what, most));
+      throw damaged(file, fmt::format("{} lists more files than there are slices ({})", what, most));
     slices.push_back(header_path(name, file, what));
   };
   if (text.starts_with("LIST")) {
@@ -81,7 +81,7 @@ std::vector<std::filesystem::path> header_slices(std::string_view text, std::str
       lines.remove_prefix(std::min(stop + 1, lines.size()));
       if (!name.empty()) add(name);
     }
-    if (slices.empty()) throw damaged(file, fmt::format("{} is a list, and no names follow", what));
+    if (slices.empty()) throw damaged(file, fmt::format("{} announces a list, but no names follow", what));
     return slices;
   }
   const std::size_t percent = text.find('%');
@@ -90,7 +90,7 @@ std::vector<std::filesystem::path> header_slices(std::string_view text, std::str
   const std::size_t blank = text.find_first_of(" \t", percent);
   const std::string_view digits = text.substr(percent + 1, letter - std::min(letter, percent + 1));
   if (letter == std::string_view::npos || text[letter] != 'd' || blank == std::string_view::npos || digits.size() > 2)
-    throw damaged(file, fmt::format("{} is {}, no 'NAME%03d.raw FIRST LAST STEP'", what, quote(text)));
+    throw damaged(file, fmt::format("{} is {}, not of the form 'NAME%03d.raw FIRST LAST STEP'", what, quote(text)));
   const std::vector<std::string_view> words = header_words_of(text.substr(blank));
   if (words.size() < 2 || words.size() > 4)
     throw damaged(file, fmt::format("{} is {}, without its first and last number", what, quote(text)));

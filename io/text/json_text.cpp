@@ -71,7 +71,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
  private:
   json& place(json&& value) {
     if (++values_ > most_values_)
-      throw scene::bad_input(fmt::format("{}: has more than {} values; give fewer", source_, most_values_));
+      throw scene::bad_input(fmt::format("{}: it has more than {} values; give fewer", source_, most_values_));
     if (open_.empty()) return root_ = std::move(value);
     if (open_.back()->is_object()) return *member_ = std::move(value);
     return open_.back()->get_ref<json::array_t&>().emplace_back(std::move(value));
@@ -83,8 +83,9 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   bool open(json&& value) {
     constexpr std::size_t deepest = 64;
     if (open_.size() == deepest)
-      throw scene::bad_input(
-          fmt::format("{}: nested more than {} levels deep; this is not one of Tessera's files", source_, deepest));
+      throw scene::bad_input(fmt::format(
+          "{}: its values are nested more than {} levels deep, unlike those of Tessera's files; give another file",
+          source_, deepest));
     open_.push_back(&place(std::move(value)));  // the address of a value is stable until the value is closed
     return true;
   }

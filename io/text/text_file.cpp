@@ -26,7 +26,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(file.string() + ": is a directory; name a file in it");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
+  if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check its permissions");
   system::note_read(file);
   // Reads in pieces, without asking for the size: a pipe has no size.
   std::string text;
@@ -35,9 +35,9 @@ std::string read_text_file(const std::filesystem::path& file) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest_file)
-      throw scene::bad_input(
-          fmt::format("{}: is larger than {} MiB, too large for a text of this kind; check that it is the right file",
-                      file.string(), largest_file >> 20));
+      throw scene::bad_input(fmt::format(
+          "{}: it is larger than {} MiB, too large for a text file of this kind; check that it is the right file",
+          file.string(), largest_file >> 20));
   }
   // Some system files without a size refuse to be read; for any other file, a failed read is an I/O error.
   if (stream.bad() && std::filesystem::file_size(file, error) == 0)

@@ -158,10 +158,10 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
     for (const auto& [name, word] : json.items())
       if (word.is_string()) take_word(name, word.get<std::string>(), header.axes, header.tags);
   } catch (const BrickJson::exception&) {
-    throw damaged(file, "its header lacks a word or a number");
+    throw damaged(file, "its header lacks a keyword or a number");
   }
   if (header.side < least_side || header.side > most_side)
-    throw damaged(file, fmt::format("its blocks have {} samples a side", header.side));
+    throw damaged(file, fmt::format("its blocks have {} samples per side, which is not supported", header.side));
   return header;
 }
 
@@ -185,7 +185,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& opt
   const std::uint64_t left = size - before - length;  // validate() keeps the products below 2^63
   if (count > left / sizeof(BlockRange) ||
       left - count * sizeof(BlockRange) != samples * scene::size_of(header.grid.type))
-    throw damaged(file, fmt::format("{} samples in {} blocks do not fit its {} bytes", samples, count, size));
+    throw damaged(file, fmt::format("{} samples in {} blocks do not match its {} bytes", samples, count, size));
   std::vector<BlockRange> ranges(count);
   opened.read(before + length, reinterpret_cast<std::byte*>(ranges.data()), count * sizeof(BlockRange));
 
@@ -264,7 +264,7 @@ void write_bricks(const scene::SampleSource& source, const std::filesystem::path
                   const VolumeTags& tags) {
   if (side < least_side || side > most_side)
     throw scene::bad_input(
-        fmt::format("`block`: {} is not a block's side; give {} to {}", side, least_side, most_side));
+        fmt::format("`block`: a block cannot have {} samples per side; give {} to {}", side, least_side, most_side));
   BrickWriter writer(source, side, tag_words(axes, tags));
   system::AtomicFile out(file);
   writer.write(out);

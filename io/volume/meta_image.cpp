@@ -45,7 +45,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
     const std::size_t equals = line.find_first_of("=:");  // MetaIO accepts both
     if (trimmed(line).empty()) continue;
     if (equals == std::string_view::npos)
-      throw damaged(file, fmt::format("{} is not a line 'Key = value' of its header", quote(trimmed(line))));
+      throw damaged(file, fmt::format("line {} of its header is not of the form 'Key = value'", quote(trimmed(line))));
     const std::string key(trimmed(line.substr(0, equals)));
     header.values[key] = std::string(trimmed(line.substr(equals + 1)));
     if (key == "ElementDataFile") return header;
@@ -78,7 +78,8 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
     volume.coding = StoredVolume::Coding::text;
   volume.compressed = meta_is_true(header.find({"CompressedData"}));
   if (volume.compressed && volume.coding == StoredVolume::Coding::text)
-    throw scene::bad_input(fmt::format("{}: its samples are compressed text; write them binary", file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: its samples are text and also compressed; write them as binary numbers", file.string()));
 }
 
 /// Axes, origin, and the meaning of samples.
@@ -150,8 +151,7 @@ StoredVolume read_meta_image_header(const InputFile& input) {
   StoredVolume volume;
   volume.format = "MetaImage";
   if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
-    throw scene::bad_input(
-        fmt::format("{}: it holds a {}, not an image; give a volume", file.string(), quote(*object)));
+    throw scene::bad_input(fmt::format("{}: it is a {}, not an image; give a volume", file.string(), quote(*object)));
   const auto* dimensions = header.find({"NDims"});
   if (!dimensions) throw damaged(file, "its header has no NDims");
   const auto count = header_count(*dimensions, 1, 99, file, "NDims");

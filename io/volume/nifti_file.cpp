@@ -193,9 +193,10 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
   for (std::size_t k = 1; k <= static_cast<std::size_t>(dimensions); ++k) {
     if (header.dim(k) < 1) throw damaged(file, fmt::format("dimension {} is {}", k, header.dim(k)));
     if (k > 5 && header.dim(k) > 1)
-      throw scene::bad_input(fmt::format(
-          "{}: it has {} dimensions, dimension {} holds {}; a volume has three, time and components, write one alone",
-          file.string(), dimensions, k, header.dim(k)));
+      throw scene::bad_input(
+          fmt::format("{}: it has {} dimensions, and dimension {} has {} entries; only three dimensions, time and "
+                      "components are supported, write one volume alone",
+                      file.string(), dimensions, k, header.dim(k)));
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
@@ -203,9 +204,10 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
   if (dimensions < 5 || header.dim(5) == 1) return;
   // In the file, the components of a sample are further apart than its steps.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
-    throw scene::bad_input(fmt::format(
-        "{}: dimension 5 holds {} components and {} steps; write only one of the two, with at most 64 components",
-        file.string(), header.dim(5), volume.steps));
+    throw scene::bad_input(
+        fmt::format("{}: dimension 5 has {} components and dimension 4 has {} time steps; write only one of the two, "
+                    "with at most 64 components",
+                    file.string(), header.dim(5), volume.steps));
   volume.components = static_cast<int>(header.dim(5));
   volume.planar = true;
 }
@@ -233,8 +235,9 @@ std::filesystem::path image_of_header(const std::filesystem::path& header) {
     std::error_code unknown;
     if (std::filesystem::is_regular_file(image, unknown)) return image;
   }
-  throw scene::bad_input(fmt::format("{}: its samples are in {}, which is not there; put it next to the header",
-                                     header.string(), stem.filename().string()));
+  throw scene::bad_input(
+      fmt::format("{}: its samples are in {}, which does not exist; put that file next to the header", header.string(),
+                  stem.filename().string()));
 }
 
 /// x.hdr for x.img; any other name is the header itself.
@@ -249,8 +252,8 @@ std::filesystem::path header_of_image(const std::filesystem::path& file) {
     std::error_code unknown;
     if (std::filesystem::is_regular_file(header, unknown)) return header;
   }
-  throw scene::bad_input(fmt::format("{}: its header {} is not there; put it next to the samples", file.string(),
-                                     stem.filename().string()));
+  throw scene::bad_input(fmt::format("{}: its header {} does not exist; put that file next to the samples",
+                                     file.string(), stem.filename().string()));
 }
 
 /// `file` is the header's path; `input` is the header or the samples.
@@ -296,7 +299,8 @@ StoredVolume read_analyze_header(const InputFile& input) {
   NiftiHeader header(header_file == input.path ? first_bytes(input.beginning) : header_bytes(header_file));
   if (header.version() != 0) return read_nifti_header(header, header_file, input);
   if (!header.is_analyze())
-    throw damaged(header_file, "it does not begin as an Analyze 7.5 or NIfTI header does (its size, 348, first)");
+    throw damaged(header_file,
+                  "it does not begin like an Analyze 7.5 or NIfTI header, whose first number is its size, 348");
   StoredVolume volume;
   volume.format = "Analyze 7.5";
   set_nifti_type(header, header_file, volume);
@@ -306,7 +310,7 @@ StoredVolume read_analyze_header(const InputFile& input) {
     const double spacing = std::abs(header.pixdim(axis + 1));
     volume.grid.geometry.spacing[static_cast<int>(axis)] = spacing > 0 && std::isfinite(spacing) ? spacing : 1;
   }
-  volume.notes.emplace_back("Analyze 7.5 does not define left and right: the axes are the file's");
+  volume.notes.emplace_back("Analyze 7.5 does not define left and right: the axes are used as stored in the file");
   set_nifti_payload(header, header_file, input, volume);
   return volume;
 }

@@ -39,11 +39,11 @@ std::vector<std::optional<glm::dvec4>> space_vectors_of(std::string_view text, c
     }
     const std::size_t close = text.find(')');
     if (text.front() != '(' || close == std::string_view::npos)
-      throw damaged(file, fmt::format("space directions hold {}, not a vector", quote(text)));
+      throw damaged(file, fmt::format("space directions contain {}, which is not a vector", quote(text)));
     const std::string_view vector = text.substr(0, close + 1);
     if (std::ranges::count(vector, ',') == 1)
       throw scene::bad_input(
-          fmt::format("{}: its space has two dimensions, by the direction {}; write a space of three, with a "
+          fmt::format("{}: its space has two dimensions, as the direction {} shows; write a space of three, with a "
                       "direction for each axis",
                       file.string(), quote(vector)));
     const std::size_t count = std::ranges::count(vector, ',') == 3 ? 4 : 3;
@@ -144,14 +144,15 @@ NrrdSpace space_of(const std::string& field) {
   if (word == "scannerxyz" || word == "3drighthanded") return {};
   if (word == "3dlefthanded")
     return {.to_world = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1),
-            .note = "its space is left-handed: x is turned round, so that no mirror image is drawn"};
+            .note = "its space is left-handed: x is reversed, so that the image is not mirrored"};
   const auto matrix = to_ras(word);
-  if (!matrix) return {.note = fmt::format("its space {} is not known: the axes are the file's", quote(field))};
+  if (!matrix)
+    return {.note = fmt::format("its space {} is unknown: the axes are used as stored in the file", quote(field))};
   if (*matrix == glm::dmat3(1.0)) return {.axes = BodyAxes::ras};
   if (*matrix == glm::dmat3(-1, 0, 0, 0, -1, 0, 0, 0, 1)) return {.axes = BodyAxes::lps};
   return {.axes = BodyAxes::ras,
           .to_world = *matrix,
-          .note = fmt::format("its space, {}, is turned to right-anterior-superior", field)};
+          .note = fmt::format("its space, {}, is converted to right-anterior-superior", field)};
 }
 
 /// Positions along one axis, from the fields that have a value per axis. If samples are cell centers, the first is half
@@ -223,7 +224,7 @@ NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& fi
     const std::size_t colon = line.find(':');
     if (line.front() == '#') continue;
     if (colon == std::string_view::npos)
-      throw damaged(file, fmt::format("{} is not a line 'field: value' of its header", quote(line)));
+      throw damaged(file, fmt::format("line {} of its header is not of the form 'field: value'", quote(line)));
     if (line.substr(colon).starts_with(":=")) {
       fields.keys[std::string(line.substr(0, colon))] = std::string(trimmed(line.substr(colon + 2)));
       continue;
@@ -242,10 +243,9 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
   NrrdAxes axes{.uses = Uses(count, NrrdAxes::Use::space), .space = {0, 1, 2}};
   if (count == 3) return axes;
   if (count < 3 || count > 5)
-    throw scene::bad_input(
-        fmt::format("{}: it has {} dimensions; a volume has three, before them components and after "
-                    "them time",
-                    file.string(), count));
+    throw scene::bad_input(fmt::format(
+        "{}: it has {} dimensions; a volume has three, optionally with components before them and time after them",
+        file.string(), count));
   Uses by_kinds(count, NrrdAxes::Use::nothing);
   if (const auto* kinds = fields.find("kinds")) {
     const auto words = nrrd_words(*kinds);
@@ -264,8 +264,8 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
     for (std::size_t a = 0; a < 3; ++a) axes.uses[skip + a] = NrrdAxes::Use::space;
     if (count == 4 && skips && !are_domains && sizes[0] > 1 && by_kinds[0] == NrrdAxes::Use::nothing)
       axes.note = fmt::format(
-          "its header has no kinds: the first of its 4 axes, of {} samples, is taken for components; "
-          "add a line of kinds if it is one of space",
+          "its header has no line 'kinds': the first of its 4 axes, with {} samples, is used as components; add such a "
+          "line if it is an axis of space",
           sizes[0]);
   }
   fill_unknown_uses(axes.uses, sizes, by_kinds);

@@ -54,7 +54,7 @@ std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t of
       if (--lines == 0) return offset + end + 1;
     offset += count;
   }
-  throw damaged(payload, "it has fewer lines than are to be skipped");
+  throw damaged(payload, "it has fewer lines than its header skips");
 }
 
 /// Sets components and time steps.
@@ -66,29 +66,29 @@ void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes
     if (axes.uses[a] == NrrdAxes::Use::steps) {
       if (before && sizes[a] > 1 << 16)
         throw scene::bad_input(
-            fmt::format("{}: axis {} holds {} time steps; write at most 65536", file.string(), a + 1, sizes[a]));
+            fmt::format("{}: axis {} has {} time steps; write at most 65536", file.string(), a + 1, sizes[a]));
       volume.steps *= static_cast<std::uint64_t>(sizes[a]);
       is_first_steps = before;
       volume.interleaved_steps = before && volume.steps > 1;
       if (std::exchange(has_steps, true))
         throw scene::bad_input(
-            fmt::format("{}: two of its axes hold time steps or lists; write one of them alone", file.string()));
+            fmt::format("{}: two of its axes are time steps or lists; write only one such axis", file.string()));
     } else if (axes.uses[a] == NrrdAxes::Use::components) {
       if (sizes[a] > 64)
-        throw scene::bad_input(fmt::format("{}: axis {} holds {} numbers of a sample; write at most 64 components",
-                                           file.string(), a + 1, sizes[a]));
+        throw scene::bad_input(
+            fmt::format("{}: axis {} has {} components per sample; write at most 64", file.string(), a + 1, sizes[a]));
       volume.components = static_cast<int>(sizes[a]);
       volume.planar = !before && volume.components > 1;
       if (std::exchange(has_components, true))
         throw scene::bad_input(
-            fmt::format("{}: two of its axes hold components; write one of them alone", file.string()));
+            fmt::format("{}: two of its axes are components; write only one such axis", file.string()));
     }
   }
   if (has_steps && has_components && (is_first_steps || volume.planar))
-    throw scene::bad_input(fmt::format(
-        "{}: with time steps and components, the components have to be its first axis and the steps its last; "
-        "reorder its axes (`unu permute`), or write one step alone",
-        file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: it has time steps and components, so components must be its first axis and time steps its "
+                    "last; reorder its axes (`unu permute`), or write one step alone",
+                    file.string()));
 }
 
 /// Sets tags from the fields and keys that other programs and write_volume() use.
@@ -146,13 +146,13 @@ StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
   else if (encoding == "hex")
     volume.coding = StoredVolume::Coding::hex;
   else if (!volume.compressed && encoding != "raw")
-    throw scene::bad_input(
-        fmt::format("{}: its encoding {} is not read; write raw, gzip, ascii or hex", file.string(), quote(encoding)));
+    throw scene::bad_input(fmt::format("{}: its encoding {} is not supported; write raw, gzip, ascii or hex",
+                                       file.string(), quote(encoding)));
   const auto* endian = fields.find("endian");
   if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
-    throw scene::bad_input(fmt::format(
-        "{}: its header does not state the order of its samples' bytes; add a line 'endian: little', or big",
-        file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: its header does not state the byte order of its samples; add a line 'endian: little', or big",
+                    file.string()));
   volume.swapped = endian && scene::is_swapped(equals_ignoring_case(*endian, "big"));
   set_nrrd_geometry(fields, axes, sizes, file, volume);
   set_nrrd_tags(fields, volume);

@@ -27,7 +27,7 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
   is_too_large = is_too_large || __builtin_mul_overflow(needed, volume.steps, &all) || all > (1ull << 62);
   if (is_too_large)
     throw scene::bad_input(fmt::format(
-        "{}: its header asks for more samples than can be addressed; it is damaged, write it again", source));
+        "{}: its header states more samples than can be addressed; the file is damaged, write it again", source));
   return needed;
 }
 
@@ -45,16 +45,16 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
   const scene::GridIndex n = volume.grid.geometry.samples();
   const std::string after = volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "";
   if (!volume.slices.empty())
-    return scene::bad_input(
-        fmt::format("{}: its part of the samples is {} bytes, the file has {}{}; the file is truncated, write it again",
-                    source, wanted.all, has, after));
+    return scene::bad_input(fmt::format(
+        "{}: its part of the samples is {} bytes, but the file has {}{}; the file is truncated, write it again", source,
+        wanted.all, has, after));
   const std::uint64_t needed = wanted.first + wanted.count;
   const std::string remedy =
       !volume.exact_size ? "the file is truncated, write it again"
       : has > needed     ? fmt::format("give the right dimensions and type, or `skip` {} if a header is before them",
                                        volume.offset + has - needed)
                          : "give the right dimensions and type";
-  return scene::bad_input(fmt::format("{}: {}x{}x{} samples of {} {}{} are {} bytes, the file has {}{}; {}", source,
+  return scene::bad_input(fmt::format("{}: {}x{}x{} samples of {} {}{} are {} bytes, but the file has {}{}; {}", source,
                                       n[0], n[1], n[2], volume.components, scene::name_of(volume.number),
                                       volume.steps > 1 ? fmt::format(", of {} steps,", volume.steps) : "", needed, has,
                                       after, remedy));

@@ -51,7 +51,8 @@ class Slabs {
     });
     if (first != n_[2] || filled != 0)
       throw scene::Error(scene::ErrorCode::system_failure, "a volume",
-                         fmt::format("{} of {} slices came out of its file", first, n_[2]), "please report");
+                         fmt::format("only {} of {} slices could be read from its file", first, n_[2]),
+                         "please report");
   }
 
  private:

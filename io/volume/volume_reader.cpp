@@ -36,7 +36,7 @@ bool describes_itself(const InputFile& file) {
 
 [[noreturn]] void refuse_beginning(const InputFile& file) {
   const std::string extension = system::lower_extension(without_gz(file.name));
-  throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", file.name,
+  throw scene::bad_input(fmt::format("{}: it does not begin like a {}; check what it is", file.name,
                                      extension.empty() ? "volume" : extension.substr(1)));
 }
 
@@ -71,7 +71,7 @@ VolumePayload usable_payload(StoredVolume& volume, std::size_t step, const std::
       payload = {std::as_bytes(std::span<const double>(*values)), values, {}, payload.count};
       volume.swapped = false;
     }
-    volume.notes.emplace_back("64-bit integers are held as doubles");
+    volume.notes.emplace_back("64-bit integers are stored as doubles");
   }
   return payload;
 }
@@ -206,10 +206,10 @@ VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& read,
   return with_clean_errors(file.name, [&] {
     const bool is_raw = !describes_itself(file) && (is_named_raw(file) || options.describes_raw());
     if (!is_raw && options.describes_raw())
-      throw scene::bad_input(fmt::format(
-          "{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one states "
-          "them itself",
-          file.name));
+      throw scene::bad_input(
+          fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files, but this file "
+                      "states them itself; leave them out",
+                      file.name));
     if (!is_raw && (file.format == nullptr || file.format->open_volume == nullptr)) refuse_beginning(file);
     const auto open = [&](const InputFile& content) {
       return is_raw ? open_raw(content, options) : file.format->open_volume(content, options);

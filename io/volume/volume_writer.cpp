@@ -139,7 +139,7 @@ const char* unsupported_property(const scene::GridGeometry& g, std::string_view 
   if (!xml && g.association == scene::Association::cell) return "that it is cell data";
   if (extension != ".vtr" && g.rectilinear()) return "where a rectilinear grid's points are";
   const bool is_turned = g.direction != glm::dmat3(1.0);
-  return (extension == ".raw" || extension == ".vtr") && is_turned ? "how the grid is turned" : nullptr;
+  return (extension == ".raw" || extension == ".vtr") && is_turned ? "how the grid is rotated" : nullptr;
 }
 
 /// Throws if the format cannot represent the grid.

@@ -35,7 +35,7 @@ void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char*
   constexpr std::uint64_t always = 64 << 20, times = 128;
   if (const std::uint64_t size = of.file->size(); bytes > always && (bytes - always) / times > size)
     throw scene::bad_input(fmt::format(
-        "{}: its {} are {} MiB, which is out of proportion to a file of {} bytes; export it again, without compression",
+        "{}: its {} are {} MiB, which is implausible for a file of {} bytes; export it again, without compression",
         of.source, what, bytes >> 20, size));
 }
 

@@ -36,8 +36,9 @@ std::uint64_t count_of(const VtkXmlElement& piece, const std::string& attribute,
                        const std::string& source) {
   std::int64_t count = -1;
   if (!read_whole_number(piece.word(attribute), count) || count < 0 || static_cast<std::uint64_t>(count) > most_tuples)
-    throw scene::bad_input(fmt::format("{}: the {} of piece {} is {}, not a number of them; the file may be damaged",
-                                       source, attribute, number, scene::quote(piece.word(attribute))));
+    throw scene::bad_input(
+        fmt::format("{}: the {} of piece {} is {}, which is not a valid count; the file may be damaged", source,
+                    attribute, number, scene::quote(piece.word(attribute))));
   return static_cast<std::uint64_t>(count);
 }
 
@@ -209,7 +210,7 @@ bool read_whole_number(const std::string& text, std::int64_t& number) {
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source) {
   const std::vector<VtkXmlElement> elements = vtk_xml_elements(file, source);
   if (elements.empty() || elements.front().name != "VTKFile")
-    throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin like a VTK XML file; check that it is one", source));
   try {
     return GridElements(elements, file, source).grid();
   } catch (const Unknown&) {

@@ -112,12 +112,12 @@ void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& seg
     const std::uint64_t now = std::min(at_once, segment.numbers - done);
     if (!numbers.read(part.data(), now)) {
       if (const std::string word = numbers.wrong_word(); !word.empty())
-        throw scene::bad_input(fmt::format("{}: its array {} has {} where a number of type {} should be; correct it",
+        throw scene::bad_input(fmt::format("{}: its array {} has {} where a number of type {} is required; correct it",
                                            source, scene::quote(segment.array.name), scene::quote(word),
                                            scene::listed_name(*segment.array.type)));
       throw scene::bad_input(
-          fmt::format("{}: its array {} breaks between its numbers {} and {} of {}; the file is truncated or "
-                      "damaged, export it again",
+          fmt::format("{}: its array {} cannot be read beyond a point between its numbers {} and {} of {}; the file is "
+                      "truncated or damaged, export it again",
                       source, scene::quote(segment.array.name), done, done + now, segment.numbers));
     }
     use(std::span(part).first(now * each));
@@ -138,8 +138,8 @@ void stream_whole_numbers(const system::PositionalFile& file, const VtkXmlSegmen
         for (std::size_t k = 0; k < numbers.size(); ++k) wide[k] = static_cast<std::int64_t>(numbers[k]);
         use(wide);
       } else {
-        throw scene::bad_input(fmt::format("{}: its array {} is not of integers; the file may be damaged", source,
-                                           scene::quote(segment.array.name)));
+        throw scene::bad_input(fmt::format("{}: the numbers of its array {} are not integers; the file may be damaged",
+                                           source, scene::quote(segment.array.name)));
       }
     });
   });

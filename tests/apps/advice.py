@@ -472,19 +472,19 @@ Tetrahedra => Triangles => give a mesh of tetrahedra, hexahedra, prisms or pyram
 1 2 3 4\n => 1 2 3.5 4\n => 3.5 is among the nodes of elements; export the file again
 0 1 0 3 => 0 one 0 3 => 'one' is among the values, and is not a number; export the file again
 N=4 => N 4 => is not a key of a zone with a value; export the file again
-T="a", => T="a => a quote does not end; end it, or export the file again
+T="a", => T="a => a quotation is not closed; close it, or export the file again
 ZONE => ZONES => it has no ZONE; check that it is a text of Tecplot's
-=POINT => =LINES => the packing is 'LINES'; write POINT or BLOCK
+=POINT => =LINES => the packing 'LINES' is not supported; write POINT or BLOCK
 VARIABLES= => FILETYPE=SOLUTION\nVARIABLES= => it holds a solution without its grid; write FILETYPE=FULL
-"X" "Y" "Z" "f" => X,Y,(Z),f => VARIABLES holds no name here; quote the names
+"X" "Y" "Z" "f" => X,Y,(Z),f => VARIABLES has no name here; put the names in quotation marks
 "Z" "f" => => give a file with all three
-E=1 => E=1, VARLOCATION=([4]=CELLCENTERED) => values of cells are by points; write DATAPACKING=BLOCK"""),
+E=1 => E=1, VARLOCATION=([4]=CELLCENTERED) => values at cells cannot be packed by point; write DATAPACKING=BLOCK"""),
     ("I", "b.tec", TWO_ZONES, r"""
 "b", N=4 => "b", VARSHARELIST=([1]=1), N=3 => and needs 3; export the file again
 "b", N=4, E=1 => "b", N=4, E=0, CONNECTIVITYSHAREZONE=1 => with which it shares them; export the file again"""),
     ("I", "a.bdf", NASTRAN, r"""
 CTETRA,9,1,1,2,3,4 => => give a deck with a volume
-1,2,3,4 => 1,2,3,5 => element 9 uses GRID 5, which the file does not have; add it, or what includes it
+1,2,3,4 => 1,2,3,5 => element 9 uses GRID 5, which the file does not have; add it, or add the file that contains it
 GRID,1 => \0GRID,1 => it is not text; give a Nastran bulk data file
 CORD2R => CORD3G => have the points written in the basic system
 CTETRA => =(99999999),*1,==\nCTETRA => it replicates more than 10000000 entries; write them out
@@ -613,7 +613,7 @@ class Trial:
             is_unread = form["holds"] == "not read" and form["name"] != "Fluent HDF5"
             for extension in form["extensions"] if is_unread else []:
                 (place / f"b{extension}").write_text("nothing")
-                wrong += self.refused(f"I b{extension}", f"({form['name']}) is not read; {form['remark']}", place)
+                wrong += self.refused(f"I b{extension}", f"({form['name']}) is not supported; {form['remark']}", place)
         return wrong
 
 

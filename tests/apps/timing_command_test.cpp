@@ -96,7 +96,8 @@ TEST(Timing, BadTracesEndInOneLineAndLeaveNothing) {
   const auto good = contents(folder / "good.json");
   const std::vector<std::pair<std::string, std::string>> cases = {
       {folder.file("cut.json", good.substr(0, good.size() / 2)), "not valid JSON"},
-      {folder.file("other.json", R"({"traceEvents":[{"name":"v8","ph":"X","ts":1,"dur":1}]})"), "no span of Tessera"},
+      {folder.file("other.json", R"({"traceEvents":[{"name":"v8","ph":"X","ts":1,"dur":1}]})"),
+       "no spans recorded by Tessera"},
       {folder.file("empty.json", ""), "empty"},
       {folder.file("text.json", "hello"), "not valid JSON"},
       {folder / "none.json", "none.json"},

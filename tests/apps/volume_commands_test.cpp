@@ -156,7 +156,7 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
   const std::string vti = ripples(folder, "a.vti"), mesh = folder.cube();
   const auto before = folder.names();
   const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
-      {{raw}, "the file has 63"},
+      {{raw}, "but the file has 63"},
       {{vti, "--integrator", "sampled:3"}, "sampled:3"},
       {{vti, "--step", "2"}, "--step"},
       {{vti, "-o", folder / "a.deep.exr", "--shade"}, "--shade"},
@@ -169,8 +169,8 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
       {{folder / "absent.vtk", "--shade"}, "no such file"},
       {{folder / "absent.vti", "--smooth"}, "no such file"},
       {{folder / "absent.vti", "--projectors", "1"}, "no such file"},
-      {{folder / "absent_%d.vtk", "--shade"}, "no file has such a name"},
-      {{folder / "absent_%d.vtr", "--shade"}, "no file has such a name"},
+      {{folder / "absent_%d.vtk", "--shade"}, "no file has a name of this pattern"},
+      {{folder / "absent_%d.vtr", "--shade"}, "no file has a name of this pattern"},
       {{folder / ""}, ""}};
   for (const auto& [arguments, words] : faults) {
     std::vector<std::string> all = {"render"};

@@ -382,7 +382,7 @@ def add_nifti(t):
     t.refuse("nifti_huge.nii", nifti_bytes(v, 4, dim=[3, 32767, 32767, 32767]), "bytes")
     t.refuse("nifti_huge.nii.gz", gzip.compress(nifti_bytes(v, 4, dim=[3, 32767, 32767, 32767])))
     t.refuse("nifti_minus.nii", nifti_bytes(v, 4, dim=[3, -5, 6, 7]), "-5")
-    t.refuse("nifti_two_files.nii", nifti_bytes(v, 4, magic=b"ni1\0"), "not there")
+    t.refuse("nifti_two_files.nii", nifti_bytes(v, 4, magic=b"ni1\0"), "does not exist")
     t.refuse("nifti_no_spacing.nii", nifti_bytes(v, 4, spacing=(1, 0, 1)), "spacing")
     t.refuse("nifti_text.nii", "hello\n")
     t.refuse("nifti_text.nii.gz", gzip.compress(b"hello\n" * 300))

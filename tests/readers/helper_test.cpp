@@ -88,7 +88,8 @@ TEST(Helper, ReportsItsCrashInOneLineAboutTheFileEveryTime) {
   const struct {
     int signal;
     const char* words;
-  } deaths[] = {{SIGILL, "crashed"}, {SIGABRT, "crashed"}, {SIGXCPU, "takes longer"}, {SIGKILL, "killed from outside"}};
+  } deaths[] = {
+      {SIGILL, "crashed"}, {SIGABRT, "crashed"}, {SIGXCPU, "takes much longer"}, {SIGKILL, "killed from outside"}};
   for (const auto& death : deaths) {
     const auto helper = std::make_shared<HelperProcess>();
     ForeignFile opened = open_foreign(helper, file, {{"reader", "vtk_xml"}, {"type", "UnstructuredGrid"}});
@@ -119,7 +120,7 @@ TEST(Helper, IsEndedWhenItWaitsForAPipe) {
   const auto helper = std::make_shared<HelperProcess>(task);
   const test::Fault fault = test::fault_of([&] { open_foreign(helper, cube, {{"reader", "openfoam"}}); });
   EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
-  EXPECT_NE(fault.message.find("waits for something that does not come"), std::string::npos) << fault.message;
+  EXPECT_NE(fault.message.find("waits for data that do not arrive"), std::string::npos) << fault.message;
   EXPECT_EQ(helper->process(), -1) << "its process is left";
 }
 

@@ -83,7 +83,8 @@ TEST(MeshShares, AnExodusMeshInSeveralFilesIsReadByTheNameOfOne) {
   test::expect_bad_input([&] { read_mesh(file); }, {"m.ex2.12.07", "m.ex2.12.11 is missing"});
   EXPECT_NEAR(testing::volume(read_mesh(folder / "alone.ex2").mesh), 1, 1e-12);
   folder.write("m.ex2.12.11", "no Exodus");
-  test::expect_bad_input([&] { read_mesh(file); }, {"m.ex2.12.11: it is a part of a mesh in 12 Exodus files"});
+  test::expect_bad_input([&] { read_mesh(file); },
+                         {"m.ex2.12.11: it states that it is one of 12 Exodus files of a mesh"});
 }
 
 TEST(MeshShares, OtherNumberedNamesAreFilesOfTheirOwn) {

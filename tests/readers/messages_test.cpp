@@ -103,8 +103,9 @@ TEST_F(Messages, AMissingBlockIsNamedWithItsList) {
   const auto list = write("a.vtm",
                           "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>"
                           "<DataSet index=\"0\" name=\"a\" file=\"gone.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
-  EXPECT_EQ(message_of([&] { read_mesh(list); }), fmt::format("{}: there is no such file, which {} lists; put it there",
-                                                              (folder / "gone.vtu").string(), list.string()));
+  EXPECT_EQ(message_of([&] { read_mesh(list); }),
+            fmt::format("{}: there is no such file, but {} lists it; put the file there",
+                        (folder / "gone.vtu").string(), list.string()));
 }
 
 /// Two tets with a point field in which `odd` is a value of the second's.

@@ -210,11 +210,11 @@ TEST(Plot3d, TextThatVtkWouldMisreadIsRefused) {
     std::string text = grid;
     return text.replace(text.find("2.1"), 3, word);
   };
-  refuse(with("2*1.0"), {"g.xyz: line 2", "'2*1.0'", "repeated"});
+  refuse(with("2*1.0"), {"g.xyz: line 2", "'2*1.0'", "repetition"});
   refuse(with("1.0D+00"), {"g.xyz: line 2", "'1.0D+00'", "with E"});
   refuse(with("x"), {"g.xyz: line 2", "'x'", "not a number"});
-  refuse(with("1 2"), {"g.xyz: no layout"});
-  refuse(grid.substr(0, grid.size() / 2), {"g.xyz: no layout"});
+  refuse(with("1 2"), {"g.xyz: ", "no layout"});
+  refuse(grid.substr(0, grid.size() / 2), {"g.xyz: ", "no layout"});
   layout.iblank = true;
   std::string blanked = grid_text(layout);
   refuse(blanked.replace(blanked.rfind('1'), 1, "1.5"), {"'1.5'", "IBLANK"});
@@ -303,7 +303,7 @@ TEST(Plot3d, ReportsDamagedFiles) {
   Plot3dLayout other = layout;
   other.grids = {{3, 3, 4}};
   folder.write("gq.bin", solution_bytes(other));
-  test::expect_bad_input([&] { read_mesh(file); }, {"gq.bin: its dimensions are not those of the grid"});
+  test::expect_bad_input([&] { read_mesh(file); }, {"gq.bin: its dimensions differ from those of the grid"});
   for (const auto& n : {std::array<std::int32_t, 3>{-3, 3, 3}, {0, 3, 3}, {2000000000, 2000000000, 2000000000}}) {
     Writer w({true, false, false, false, false, {n}});
     w.dimensions();

@@ -286,7 +286,7 @@ TEST_F(VtkFiles, ReportsWrongIndicesByCell) {
   block.connectivity[20] = 4'000'000'000u;
   EXPECT_NE(error("i.vtu", testing::vtu_text(block)).find("uses point 4000000000"), std::string::npos);
   const std::string start = "Name=\"connectivity\" NumberOfComponents=\"1\" format=\"ascii\">\n";
-  EXPECT_NE(error("n.vtu", with(good(), start, start + "-7 ")).find("cell 0 uses a point of no possible number"),
+  EXPECT_NE(error("n.vtu", with(good(), start, start + "-7 ")).find("cell 0 uses a point with an impossible number"),
             std::string::npos);
 }
 

@@ -243,7 +243,7 @@ TEST_F(Xdmf, InAGzipFileHaveTheirNumbersInTheText) {
   text.replace(at, text.find("</DataItem>", at) - at,
                fmt::format("<DataItem Dimensions=\"5 3\" NumberType=\"Float\" Precision=\"8\" Format=\"Binary\">{}",
                            other.string()));
-  test::expect_bad_input([&] { read_mesh(packed(file_of(text))); }, {"a.xmf.gz: it goes with other files"});
+  test::expect_bad_input([&] { read_mesh(packed(file_of(text))); }, {"a.xmf.gz: it refers to other files"});
 }
 
 TEST_F(Xdmf, RefusesDamagedAndUnusualFilesInOneLine) {

@@ -69,9 +69,9 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, cells::Cel
 }
 
 [[noreturn]] void refuse_corner(std::size_t cell, std::uint32_t corner, std::size_t points, const std::string& where) {
-  throw scene::bad_input(
-      fmt::format("{}: cell {} uses {}, the file holds {} points; write cells and points from one mesh", where, cell,
-                  corner == UINT32_MAX ? "a point of no possible number" : fmt::format("point {}", corner), points));
+  throw scene::bad_input(fmt::format(
+      "{}: cell {} uses {}, but the file has only {} points; write cells and points from one mesh", where, cell,
+      corner == UINT32_MAX ? "a point with an impossible number" : fmt::format("point {}", corner), points));
 }
 
 /// Checks offsets and corners received from a reader.
@@ -174,12 +174,12 @@ void add_grid_cells(const std::array<std::int64_t, 3>& n, cells::CellBlock& bloc
     if (__builtin_mul_overflow(points, static_cast<std::uint64_t>(std::max<std::int64_t>(side, 0)), &points))
       points = std::numeric_limits<std::uint64_t>::max();
   if (points != block.positions.size())
-    throw scene::bad_input(fmt::format("{}: {} x {} x {} points are promised, {} are there; the file is damaged", where,
-                                       n[0], n[1], n[2], block.positions.size()));
+    throw scene::bad_input(fmt::format("{}: its header states {} x {} x {} points, but it has {}; the file is damaged",
+                                       where, n[0], n[1], n[2], block.positions.size()));
   if (points == 0) return;
   if (points > std::numeric_limits<std::uint32_t>::max())
-    throw scene::bad_input(
-        fmt::format("{}: {} points in one block; split it into blocks below 2^32 points", where, points));
+    throw scene::bad_input(fmt::format(
+        "{}: {} points in one block are too many; split it into blocks of fewer than 2^32 points", where, points));
   std::size_t cells = 1;
   for (const std::int64_t side : n) cells *= static_cast<std::size_t>(std::max<std::int64_t>(side - 1, 1));
   if (n[0] < 2 || n[1] < 2 || n[2] < 2) {

@@ -11,9 +11,9 @@ namespace tessera::io {
 FilledMesh fill_surface(const cells::Surface& surface, const FillSize& size, const InputFile& file) {
   const std::string source = file.path.string();
   HelperTask task{"filling it by TetGen", "correct the surface", Reader::tetgen};
-  task.limit_remedy = size.is_chosen
-                          ? "correct the surface, or set a larger `max_volume`"
-                          : "correct the surface, or set `max_volume`, with which it may take more time and memory";
+  task.limit_remedy =
+      size.is_chosen ? "correct the surface, or set a larger `max_volume`"
+                     : "correct the surface, or set `max_volume`, which allows filling to take more time and memory";
   nlohmann::json request{{"reader", "fill"},  {"surface", json_of(surface)}, {"max_volume", size.max_volume},
                          {"tets", size.tets}, {"is_chosen", size.is_chosen}, {"limit_remedy", task.limit_remedy}};
   const ForeignFile opened = open_foreign(file, std::move(request), {}, std::move(task));

@@ -49,8 +49,8 @@ cells::Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
     cells::Polygon polygon;
     for (auto k = static_cast<std::size_t>(offsets[c]); k < static_cast<std::size_t>(offsets[c + 1]); ++k) {
       if (corners[k] >= surface.points.size())
-        throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it again", file.source,
-                                           c, corners[k], surface.points.size()));
+        throw scene::bad_input(fmt::format("{}: face {} uses point {}, but the file has only {} points; write it again",
+                                           file.source, c, corners[k], surface.points.size()));
       polygon.push_back(corners[k]);
     }
     surface.facets.push_back({{std::move(polygon)}, {}});
@@ -90,7 +90,7 @@ VtkSurface read_vtk_surface(const InputFile& file) {
   left_out += part.cell_fields.size();
   if (left_out > 0)
     result.notes.push_back(
-        fmt::format("{} left out of the surface's arrays: only single numbers at points become fields",
+        fmt::format("{} left out of the surface's arrays: only arrays with one number per point become fields",
                     left_out == 1 ? "1 is" : fmt::format("{} are", left_out)));
   return result;
 }

@@ -62,7 +62,7 @@ std::vector<char*> helper_environment() {
 
 [[noreturn]] void fail_to_start(Reader reader, const std::string& why) {
   throw scene::Error(scene::ErrorCode::system_failure, reader_program(reader).program, why,
-                     "it reads files of other programs' formats; install it with the library");
+                     "this helper reads the formats of other programs; install it with the library");
 }
 
 /// Whether this process may use less memory than the machine has. Its children inherit the limit.
@@ -77,30 +77,30 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
   if (!has_begun)
     return {
         system_failure,
-        fmt::format("{} cannot begin: {} exits as soon as it is started; check that it runs, and give it more memory",
+        fmt::format("{} cannot start: {} exits as soon as it is started; check that it runs, and give it more memory",
                     task.words, reader_program(task.reader).program)};
-  if (!known || !WIFSIGNALED(status))
-    return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
+  if (!known || !WIFSIGNALED(status)) return {bad_input, fmt::format("{} failed; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
     case SIGXCPU:
-      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words,
+      return {bad_input, fmt::format("{} takes much longer than a file of this size should; {}", task.words,
                                      task.limit_remedy.empty() ? task.remedy : task.limit_remedy)};
     case SIGKILL:
-      return {system_failure,
-              fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words)};
+      return {
+          system_failure,
+          fmt::format("{} was killed from outside, perhaps because memory ran out; use a larger machine", task.words)};
     default:
       break;
   }
   const std::string words = fmt::format("{} crashed ({})", task.words, ::strsignal(WTERMSIG(status)));
-  if (is_limited()) return {system_failure, words + ", perhaps for want of memory; raise the limit of address space"};
+  if (is_limited())
+    return {system_failure, words + ", perhaps because memory ran out; raise the limit on address space"};
   return {bad_input, fmt::format("{}; {}", words, task.remedy)};
 }
 
 HelperDeath waiting_death(const HelperTask& task) {
-  return {scene::ErrorCode::bad_input,
-          fmt::format("{} waits for something that does not come, such as a pipe that is named in it; have it name "
-                      "regular files alone",
-                      task.words)};
+  return {scene::ErrorCode::bad_input, fmt::format("{} waits for data that do not arrive, perhaps because the file "
+                                                   "refers to a pipe; let it refer to regular files only",
+                                                   task.words)};
 }
 
 /// A message that the helper sends before its reply: the progress, or the file that it is reading.
@@ -170,7 +170,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   if (program.empty()) return;
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    fail_to_start(task_.reader, fmt::format("there is no socket for it: {}", std::strerror(errno)));
+    fail_to_start(task_.reader, fmt::format("no socket can be created for it: {}", std::strerror(errno)));
   socket_ = system::Descriptor(ends[0]);
   const system::Descriptor theirs(ends[1]);
 

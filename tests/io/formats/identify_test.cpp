@@ -124,8 +124,9 @@ TEST_F(Identify, TheNameDecidesWhereTheContentDoesNot) {
 TEST_F(Identify, ReportsUnknownAndUnsupportedFormats) {
   EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("its format (MFEM) is not read"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("its format (MFEM) is not supported"),
+      std::string::npos);
   EXPECT_FALSE(is_mesh(identify(write("x.vtu", "MFEM mesh v1.0\n"))));
   EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
 }
@@ -135,7 +136,8 @@ TEST_F(Identify, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
       "version https://git-lfs.github.com/spec/v1\n"
       "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
   const auto refusal_of = [](const std::filesystem::path& file) {
-    return fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string());
+    return fmt::format("{}: it is a Git LFS pointer, not the file itself; `git lfs pull` downloads the file",
+                       file.string());
   };
   for (const char* name : {"x", "x.vtu", "x.vtk", "x.stl", "x.msh", "x.med", "x.e", "x.cgns", "x.tets", "x.node"}) {
     const auto file = write(name, pointer);
@@ -154,9 +156,9 @@ TEST_F(Identify, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
 
 TEST_F(Identify, AFileThatOnlyHasASolversExtensionIsNotRead) {
   const std::string text = "26 0 0 1\nPATRAN neutral\n";
-  EXPECT_NE(message_of([&] { read_mesh(write("x.neu", text)); }).find("it does not begin as a file of GAMBIT does"),
+  EXPECT_NE(message_of([&] { read_mesh(write("x.neu", text)); }).find("it does not begin like a file of GAMBIT"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_mesh(write("x.inp", text)); }).find("it does not begin as a file of AVS UCD does"),
+  EXPECT_NE(message_of([&] { read_mesh(write("x.inp", text)); }).find("it does not begin like a file of AVS UCD"),
             std::string::npos);
 }
 

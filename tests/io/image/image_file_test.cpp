@@ -109,7 +109,8 @@ TEST(ImageFile, HalfRefusesWhatItCannotHold) {
   const TemporaryFolder folder;
   scene::Image image = picture();
   image.rgba[4 * image.index(3, 2)] = 1e6f;
-  expect_bad_input([&] { write_image(image, folder / "a.exr", {.half = true}); }, {"pixel (3, 2)", "write float"});
+  expect_bad_input([&] { write_image(image, folder / "a.exr", {.half = true}); },
+                   {"pixel (3, 2)", "write 32-bit floats"});
   EXPECT_TRUE(folder.names().empty());
   write_image(image, folder / "a.exr", {});
 }
@@ -146,7 +147,7 @@ TEST(ImageFile, MemoryRefusesWhatFilesDo) {
   scene::Image image = picture();
   if (has_jpeg())
     expect_bad_input([&] { checked_jpeg_bytes(image, {.jpeg_quality = 101}); },
-                     {"image: the quality 101 is not 1 to 100"});
+                     {"image: the quality is 101, but must be 1 to 100"});
   image.rgba[4 * image.index(3, 2)] = 1e6f;
   expect_bad_input([&] { checked_exr_bytes(image, {.half = true}); }, {"image: pixel (3, 2)"});
   image.size.width = 0;
@@ -387,7 +388,7 @@ TEST(ImageFile, RefusesBrokenFilesWhenReading) {
   expect_bad_input([&] { read_image(folder.write("text.exr", "hello")); }, {"text.exr: "});
   expect_bad_input([&] { read_image(folder.write("empty.exr", "")); }, {"empty.exr: "});
   expect_bad_input([&] { read_image(folder / "none.exr"); }, {"no such file"});
-  expect_bad_input([&] { read_image(folder.write("a.png", "")); }, {"a.png: ", ".exr and .pfm"});
+  expect_bad_input([&] { read_image(folder.write("a.png", "")); }, {"a.png: ", "give an .exr or a .pfm"});
   for (const char* text : {"", "P6\n1 1\n-1\n", "PF\n", "PF\n0 1\n-1\n", "PF\n1 1e9\n-1\n", "PF\n1.5 1\n-1\n",
                            "PF\n1 1\n0\n", "PF\n1 1\n-1\nabc", "PF\n65536 65536\n-1\n", "PF\nnan nan\nnan\n"})
     expect_bad_input([&] { read_image(folder.write("bad.pfm", text)); }, {"bad.pfm: "});

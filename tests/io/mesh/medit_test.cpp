@@ -157,17 +157,17 @@ TEST(MeditBinary, FaultsAreNamedWithTheirPlace) {
   Writer curved(3, false);
   curved.points({{0, 0, 0}});
   curved.cells(33, {std::vector<std::int64_t>(28, 1)});
-  refuse(curved.text(), {"hexahedra of order 2", "not read"});
+  refuse(curved.text(), {"hexahedra of order 2", "not supported"});
   Writer wild(2, false);
   wild.points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
   wild.cells(8, {{1, 2, 3, 5, 0}});
-  refuse(wild.text(), {"a cell uses point 5 of 4"});
+  refuse(wild.text(), {"a cell uses point 5, but the file has only 4"});
   Writer flat(2, false);
   flat.points({{0, 0, 0}});
   refuse(flat.text(), {"no cells of volume"});
   std::string long_list = tower(1, false);
   long_list[28] = '\x7f';  // the number of points
-  refuse(long_list, {"byte 20", "more than the file can hold"});
+  refuse(long_list, {"byte 20", "more than a file of this size can contain"});
 }
 
 /// A tetrahedron over each side of a triangle, of references 7 and 8, with `gap` after each word.
@@ -219,11 +219,11 @@ TEST(MeditText, FaultsAreNamedWithTheirLine) {
   for (std::size_t length = 30; length + 30 < whole.size(); length += 7)
     test::expect_bad_input([&] { read_mesh(folder.write("a.mesh", whole.substr(0, length))); }, {"a.mesh"});
   refuse("Dimension\n3", "Dimension\n2", {"it has 2 dimensions"});
-  refuse("Tetrahedra\n2", "Tetrahedra\n900", {"line 36", "more than the file can hold"});
-  refuse("5\n8", "6\n8", {"a cell uses point 6 of 5"});
+  refuse("Tetrahedra\n2", "Tetrahedra\n900", {"line 36", "more than a file of this size can contain"});
+  refuse("5\n8", "6\n8", {"a cell uses point 6, but the file has only 5"});
   refuse("5\n8", "x\n8", {"'x' is not a point of a cell"});
   for (const std::string word : {"HexahedraQ2", "TetrahedraP3", "TetrahedraP2Ordering", "Prisms9", "PolyhedraHeaders"})
-    refuse("Tetrahedra", word, {fmt::format("its {} are not read", word)});
+    refuse("Tetrahedra", word, {fmt::format("its {} are not supported", word)});
   refuse("Tetrahedra", "Triangles", {"no cells of volume"});
   // Numbers remain: the count is too small, or cells have more nodes than their keyword allows.
   refuse("Tetrahedra\n2", "Tetrahedra\n1", {"follows the last of the Tetrahedra"});

@@ -178,8 +178,8 @@ TEST_F(MeshParts, FaultsNameThePiece) {
     EXPECT_TRUE(message_of([&] { read_in_parts(file, parts, options); }).starts_with((folder / "piece2.vtu").string()));
   std::filesystem::remove(folder / "piece2.vtu");
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }),
-            fmt::format("{}: there is no such file, which {} lists; put it there", (folder / "piece2.vtu").string(),
-                        file.string()));
+            fmt::format("{}: there is no such file, but {} lists it; put the file there",
+                        (folder / "piece2.vtu").string(), file.string()));
   folder.write("piece2.vtu", test::contents(file));  // a file in pieces is not a piece
   EXPECT_NE(message_of([&] { read_mesh(file); }).find("'PUnstructuredGrid'"), std::string::npos);
   options.time_step = 3;

@@ -285,19 +285,19 @@ TEST_F(Nastran, FaultsAreNamed) {
   refuse(grids, {"a.bdf", "no elements"});
   refuse(grids + tet, {"a.bdf", "element 9 uses GRID 4"});
   refuse(grids + "GRID,4,5,0.,0.,1.\n" + tet, {"GRID 4 is in the coordinate system 5, which the file does not have"});
-  refuse(grids + "GRID,4,5,0.,0.,1.\nCORD3G,5,1,2,3\n" + tet, {"system 5, a 'CORD3G', which is not read"});
+  refuse(grids + "GRID,4,5,0.,0.,1.\nCORD3G,5,1,2,3\n" + tet, {"system 5, a 'CORD3G', which is not supported"});
   refuse(grids +
              "GRID,4,5,0.,0.,1.\nCORD2R,5,6,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,6,5,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n" +
              tet,
-         {"leads back to itself"});
+         {"refers back to itself"});
   refuse(grids + "GRID,4,5,0.,0.,1.\nCORD1R,5,1,2,4\n" + tet,
-         {"GRID 4 is in a coordinate system that it makes itself"});
+         {"GRID 4 is in a coordinate system that it defines itself"});
   refuse(grids + "GRID,4,5,0.,0.,1.\nCORD2R,5,0,0.,0.,0.,0.,0.,1.\n,0.,0.,2.\n" + tet, {"on one line"});
   refuse(grids + "GRID,4,,0.,zero,1.\n" + tet, {"line 7", "'zero' of GRID is not a number"});
   refuse(grids + "GRID,1,,5.,0.,1.\n" + tet, {"GRID 1 is given twice"});
-  refuse(grids + "CTETRA,9,1,1,2,,4\n", {"line 7", "number 3 is blank"});
+  refuse(grids + "CTETRA,9,1,1,2,,4\n", {"line 7", "corner 3 is blank"});
   refuse(grids + "GRID,4,,0.,0.,1.\n=,*x,==\n" + tet, {"line 8", "'x' of GRID is not a number"});
-  refuse(grids + "GRID,4,,0.,0.,1.\n=,=3,==\n" + tet, {"line 8", "'=3' of GRID is not a replication"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=,=3,==\n" + tet, {"line 8", "'=3' of GRID is not a valid replication"});
   refuse(grids + "GRID,4,,0.,0.,1.\n=(many)\n" + tet, {"line 8", "'=(MANY)' is not a number of replications"});
   refuse(grids + "GRID,4,,0.,0.,1.\n=,*1,==\n=(4000000000)\n" + tet, {"line 9", "replicates more than 10000000"});
   refuse(grids + "GRID,9223372036854775807,,0.,0.,1.\n=,*1,==\n" + tet, {"line 8", "'*1' of GRID", "2^63"});

@@ -66,14 +66,14 @@ TEST(PlyFile, ReportsWrongCountsTypesAndIndices) {
     text.replace(text.find(from), from.size(), to);
     test::expect_bad_input([&] { parse_ply(text, "s.ply"); }, {"s.ply: ", part});
   };
-  expect("vertex 4", "vertex 99999999999", "promises '99999999999'");
-  expect("vertex 4", "vertex -4", "promises '-4'");
+  expect("vertex 4", "vertex 99999999999", "its header states '99999999999'");
+  expect("vertex 4", "vertex -4", "its header states '-4'");
   expect("vertex 4", "vertex 5", "ends before");  // the faces' numbers are interpreted as a vertex
   expect("face 2", "face 3", "ends before");
   expect("3 0 1 2 7", "3 0 1 4 7", "face 0 uses vertex 4");
   expect("3 0 1 2 7", "3 0 1 -2 7", "face 0 uses vertex -2");
-  expect("3 0 1 2 7", "-3 0 1 2 7", "has the length -3");
-  expect("3 0 1 2 7", "3000000 0 1 2 7", "has the length 3000000");
+  expect("3 0 1 2 7", "-3 0 1 2 7", "has the impossible length -3");
+  expect("3 0 1 2 7", "3000000 0 1 2 7", "has the impossible length 3000000");
   expect("property float x", "property quad x", "unknown type");
   expect("property float x", "property float a", "no x, y and z");
   expect("vertex_indices", "corners", "no vertex_indices");

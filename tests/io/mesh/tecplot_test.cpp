@@ -261,7 +261,7 @@ TEST_F(Tecplot, FacesAndOtherRecordsAreLeftOut) {
   expect_pressure(mesh);
   EXPECT_NE(std::ranges::find(mesh.notes, "1 of 2 zones are lines or faces, which are left out"), mesh.notes.end());
   test::expect_bad_input([&] { read_mesh(folder.write("b.tec", variables + face + points)); },
-                         {"b.tec", "1 zones hold no volume"});
+                         {"b.tec", "1 zones contain no volume"});
 }
 
 TEST_F(Tecplot, FaultsAreNamedWithTheirLine) {
@@ -274,15 +274,16 @@ TEST_F(Tecplot, FaultsAreNamedWithTheirLine) {
   EXPECT_EQ(parse_tecplot(tet + points + "1 2 3 4\n", "a.tec", std::nullopt).blocks.size(), 1u);
   const std::string one = tet + points + "1 2 3 4\n";
   EXPECT_EQ(parse_tecplot(one + "TITLE=\"b\"\n" + one, "a.tec", std::nullopt).blocks.size(), 2u);  // concatenated
-  refuse(one + "VARIABLES=X,Y,Z,p\n" + one, {"line 8", "VARIABLES names others"});
+  refuse(one + "VARIABLES=X,Y,Z,p\n" + one, {"line 8", "VARIABLES differs from the list"});
   refuse(tet + points + "1 2 3\n", {"a.tec", "line 8", "nodes of elements", "truncated"});
-  refuse(tet + points + "1 2 3 5\n", {"line 2", "uses node 5, the zone has 4"});
+  refuse(tet + points + "1 2 3 5\n", {"line 2", "uses node 5, but the zone has 4 nodes"});
   refuse(tet + points + "1 2 x 4\n", {"line 7", "'x'", "not a number"});
   refuse(tet + "0 0 0\n1 0 zero\n", {"line 4", "'zero'"});
-  refuse(head + "ZONETYPE=FEMIXED\n" + points, {"line 2", "'FEMIXED'", "not read"});
-  refuse(head + "ZONETYPE=FEBRICK, VARSHARELIST=([1-4]=1)\n" + points, {"line 2", "zone 1, and 0 zones come before"});
+  refuse(head + "ZONETYPE=FEMIXED\n" + points, {"line 2", "'FEMIXED'", "not supported"});
+  refuse(head + "ZONETYPE=FEBRICK, VARSHARELIST=([1-4]=1)\n" + points,
+         {"line 2", "zone 1, but only 0 zones come before"});
   refuse(head + "ZONETYPE=FEBRICK, VARLOCATION=([9]=CELLCENTERED)\n", {"line 2", "'[9]'", "1 to 3"});
-  refuse("VARIABLES=X,Y,Z\nZONE N=99999999999, E=1, ZONETYPE=FEBRICK\n" + points, {"line 2", "more than the file"});
+  refuse("VARIABLES=X,Y,Z\nZONE N=99999999999, E=1, ZONETYPE=FEBRICK\n" + points, {"line 2", "more than a file"});
   refuse("VARIABLES=X,Y\nZONE I=2, J=2, K=2\n0 0\n", {"a.tec", "2 variables"});
   refuse("FILETYPE=SOLUTION\nVARIABLES=p\nZONE I=2,J=2,K=2\n1\n", {"line 1", "without its grid"});
   const std::string whole = variables + zone(", DATAPACKING=BLOCK") + coordinates(Cubes(n)) + pressures(Cubes(n)) +

@@ -67,7 +67,7 @@ TEST(NodeEle, ReportsBadTextByLine) {
   };
   expect_bad_input(parse("", ele_text), {"m.node: line", "number of points"});
   expect_bad_input(parse("9000000000000 3 0 0\n0 0 0 0\n", ele_text),
-                   {"m.node: line 1", "more than the file can hold"});
+                   {"m.node: line 1", "more than a file of this size can contain"});
   expect_bad_input(parse("-4 3 0 0\n", ele_text), {"-4"});
   expect_bad_input(parse("99999999999999999999 3 0 0\n", ele_text), {"too large"});
   expect_bad_input(parse("1 2 0 0\n0 0 0 0\n", ele_text), {"2 coordinates"});
@@ -76,7 +76,8 @@ TEST(NodeEle, ReportsBadTextByLine) {
   expect_bad_input(parse("1 3 0 0\n0 0 0\n", ele_text), {"m.node: line 2: z is missing"});
   expect_bad_input(parse("1 3 0 0\n0 0 zero 0\n", ele_text), {"'zero' is not a number"});
   expect_bad_input(parse(node_text, "2 4 0\n1 1 2 3 4\n"), {"m.ele: line", "a tet"});
-  expect_bad_input(parse(node_text, "1 4 0\n1 1 2 3 6\n"), {"m.ele: line 2: point 6 is used, there are 5"});
+  expect_bad_input(parse(node_text, "1 4 0\n1 1 2 3 6\n"),
+                   {"m.ele: line 2: point 6 is used, but there are only 5 points"});
   expect_bad_input(parse(node_text, "1 4 0\n1 0 2 3 4\n"), {"point 0 is used"});
   expect_bad_input(parse(node_text, "1 8 0\n"), {"4 or 10"});
 }
@@ -262,7 +263,7 @@ TEST_F(Filled, ReportsOpenCuttingFlatAndEmptySurfaces) {
   expect_bad_input([&] { read_mesh(folder.write("n.ply", ply({nan}))); }, {"n.ply: "});
   ReadOptions options;
   options.max_volume = -1;
-  expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a positive one"});
+  expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a number above 0"});
 }
 
 /// A prism whose three sides are warped quads, as in many modelled surfaces, which TetGen does not accept.

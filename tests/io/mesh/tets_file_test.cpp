@@ -61,10 +61,10 @@ std::vector<std::byte> bytes(std::int64_t nverts, std::int64_t ntets, std::size_
 TEST(TetsFile, SizesAreCheckedBeforeAnythingIsAllocated) {
   const auto parse = [](std::vector<std::byte> b) { return [b] { parse_tets(TetsBytes(b), "m.tets"); }; };
   expect_bad_input(parse({}), {"m.tets: 0 bytes are too few"});
-  expect_bad_input(parse(bytes(-1, 1, 100)), {"promises -1 vertices"});
+  expect_bad_input(parse(bytes(-1, 1, 100)), {"its header states -1 vertices"});
   expect_bad_input(parse(bytes(1, -1, 100)), {"and -1 tets"});
-  expect_bad_input(parse(bytes(INT64_MAX, INT64_MAX, 100)), {"promises"});
-  expect_bad_input(parse(bytes(4, INT64_MAX / 16, 80)), {"promises"});
+  expect_bad_input(parse(bytes(INT64_MAX, INT64_MAX, 100)), {"its header states"});
+  expect_bad_input(parse(bytes(4, INT64_MAX / 16, 80)), {"its header states"});
   expect_bad_input(parse(bytes(1'000'000'000, 1'000'000'000, 100)), {"truncated"});
   expect_bad_input(parse(bytes(4, 1, 79)), {"truncated"});
   expect_bad_input(parse(bytes(4, 1, 81)), {"another format"});
@@ -75,7 +75,8 @@ TEST(TetsFile, IndicesAreChecked) {
   for (const std::int32_t wrong : {-1, 4, INT32_MAX, INT32_MIN}) {
     std::vector<std::byte> all = bytes(4, 2, 96);
     std::memcpy(all.data() + 16 + 64 + 16 + 8, &wrong, 4);
-    expect_bad_input([&] { parse_tets(TetsBytes(all), "m.tets"); }, {"tet 1 uses vertex", "the file holds 4"});
+    expect_bad_input([&] { parse_tets(TetsBytes(all), "m.tets"); },
+                     {"tet 1 uses vertex", "but the file has only 4 vertices"});
   }
 }
 

@@ -179,7 +179,7 @@ TEST_F(VtuDamaged, GeometryOutOfProportionToTheFileIsRefusedBeforeItTakesMemory)
   std::string all = table;
   for (std::size_t k = 0; k < blocks; ++k) all += packed;
   const auto file = folder.write("b.vtu", text(points, all));
-  test::expect_bad_input([&] { open_vtk_xml(file); }, {"its points are 686 MiB", "out of proportion"});
+  test::expect_bad_input([&] { open_vtk_xml(file); }, {"its points are 686 MiB", "implausible"});
 }
 
 TEST_F(VtuDamaged, ElementsNestedWithoutEndAreRefused) {

@@ -477,7 +477,7 @@ TEST_F(Vtu, NamesWordsThatAreNotNumbers) {
     ASSERT_NE(at, std::string::npos);
     const auto file = write(changed.replace(at + 3, 2, word));
     test::expect_bad_input([&] { vtu_block(file); }, {"m.vtu: its array 'p' has '" + std::string(word) +
-                                                      "' where a number of type int32 should"});
+                                                      "' where a number of type int32 is required"});
   }
 }
 

@@ -114,7 +114,7 @@ TEST(CameraFile, RefusesTextWithoutAViewNamingTheLine) {
       {good, {"neither parallel_scale nor view_angle"}},
       {good + "parallel_scale 1\nview_angle 30\n", {"both given"}},
       {good + "view_angle 30\nview_angle 30\n", {"line 4: view_angle is given twice"}},
-      {good + "zoom 3\n", {"line 3: 'zoom' is not a word of a camera", "parallel_scale"}},
+      {good + "zoom 3\n", {"line 3: 'zoom' is not a setting of a camera", "parallel_scale"}},
       {good + "Position 1 1 1\n", {"line 3: 'Position'"}},
       {good + "view_angle\n", {"line 3: view_angle has 0 numbers; it takes 1"}},
       {good + "view_up 0 1\n", {"line 3: view_up has 2 numbers; it takes 3"}},
@@ -148,7 +148,7 @@ TEST(CameraFile, RefusesBrokenJson) {
     std::vector<std::string> parts;
   } cases[] = {
       {"{\"position\": [0,0", {"not valid JSON", "line 1"}},
-      {"{" + good + ", \"fov\": 3}", {"'fov' is not a word"}},
+      {"{" + good + ", \"fov\": 3}", {"'fov' is not a setting"}},
       {"{" + good + ", \"view_angle\": 3}", {"'view_angle' is given twice"}},
       {"{" + good + ", \"parallel_scale\": 3}", {"both given"}},
       {"{" + good + ", \"view_up\": [0,1]}", {"view_up has 2 numbers"}},

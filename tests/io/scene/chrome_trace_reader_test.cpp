@@ -76,7 +76,7 @@ TEST(ChromeTraceReader, ACutFileIsRefusedWhereverItWasCut) {
 TEST(ChromeTraceReader, ReportsATraceOfAnotherProgram) {
   for (const char* text : {R"({"traceEvents": [{"name": "v8", "cat": "chrome", "ph": "X", "ts": 1, "dur": 2}]})", "{}",
                            "[]", "17", R"({"position": [1, 2, 3]})"})
-    expect_bad_input([&] { parse_chrome_trace(text, "a.json"); }, {"a.json: no span of Tessera"});
+    expect_bad_input([&] { parse_chrome_trace(text, "a.json"); }, {"a.json: it has no spans recorded by Tessera"});
 }
 
 TEST(ChromeTraceReader, ReportsInvalidEventsByTheirNumber) {

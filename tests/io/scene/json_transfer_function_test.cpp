@@ -45,7 +45,7 @@ TEST(JsonTransferFunction, TakesTheOptionsOfFilesOfExtinctions) {
   EXPECT_FALSE(loaded.unit_distance);
   options.opacity_points = {{0, 0}, {1, 1}};
   expect_bad_input([&] { parse_json_transfer_function(R"({"knots": [[0, 0, 0, 0, 1]]})", "f.json", options); },
-                   {"f.json: holds extinctions", "`opacity_points`"});
+                   {"f.json: contains extinctions", "`opacity_points`"});
 }
 
 TEST(JsonTransferFunction, RefusesInvalidFunctionsAndNamesTheKnot) {
@@ -57,7 +57,7 @@ TEST(JsonTransferFunction, RefusesInvalidFunctionsAndNamesTheKnot) {
       {R"({"knots": []})", {"f: knots is not a list of knots"}},
       {R"({"knots": [[0, 1, 1, 1, 1], [1, 1, 1, 1]]})", {"f: knot 2 is not a list of 5 numbers"}},
       {R"({"knots": [[0, 1, "x", 1, 1]]})", {"f: knot 1: its green is not a finite number"}},
-      {R"({"knots": [[0, 1, 1, -1, 1]]})", {"f: knot 1: its blue is -1; it must not be negative"}},
+      {R"({"knots": [[0, 1, 1, -1, 1]]})", {"f: knot 1: its blue is -1, but must not be negative; give 0 or more"}},
       {R"({"knots": [[2, 1, 1, 1, 1], [1, 1, 1, 1, 1]]})", {"f: knot 2: its value 1 is below the one before it, 2"}},
       {R"({"knots": [[0, 1, 1, 1, 1]], "range": [0, 1]})", {"f: 'range' is unknown next to knots"}},
       {R"({"knots": [[0, 1, 1, 1, 1])", {"f: line 1, column", "not valid JSON"}},

@@ -34,7 +34,7 @@ TEST(JsonText, HasALimitOfLevelsAndOfValues) {
   expect_bad_input([&] { parse_json(nested(65), "f"); }, {"more than 64 levels deep"});
   expect_bad_input([&] { parse_json(std::string(1'000'000, '['), "f"); }, {"more than 64 levels deep"});
   EXPECT_NO_THROW(parse_json(R"([1, {"a": []}])", "f", 4));
-  expect_bad_input([] { parse_json(R"([1, {"a": []}])", "f", 3); }, {"f: has more than 3 values"});
+  expect_bad_input([] { parse_json(R"([1, {"a": []}])", "f", 3); }, {"f: it has more than 3 values"});
 }
 
 // Quadratic time would be hours.

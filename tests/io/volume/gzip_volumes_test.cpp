@@ -75,7 +75,7 @@ TEST_F(GzipVolumes, RefusesDamagedFilesByTheirOwnName) {
   broken[whole.size() - 6] = static_cast<char>(~broken[whole.size() - 6]);  // of the checksum
   expect_no_volume(folder.write("sum.nrrd.gz", broken), "end or break");
   expect_no_volume(write("short.nrrd.gz", nrrd.substr(0, nrrd.size() - 1)), "short.nrrd.gz: 4x3x2 samples of 1 int16");
-  expect_no_volume(write("a_4x3x2_int16.raw.gz", "abc"), "48 bytes, the file has 3");
+  expect_no_volume(write("a_4x3x2_int16.raw.gz", "abc"), "48 bytes, but the file has 3");
   expect_no_volume(write("text.gz", "no volume"), "does not begin");
 }
 
@@ -112,7 +112,7 @@ TEST_F(GzipVolumes, RefusesFormatsOfSeveralFiles) {
   const std::string nhdr = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: d.raw\n";
   const std::string mhd =
       "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = d.raw\n";
-  expect_no_volume(write("a.nhdr.gz", nhdr), "a.nhdr.gz: it goes with other files");
+  expect_no_volume(write("a.nhdr.gz", nhdr), "a.nhdr.gz: it refers to other files");
   expect_no_volume(write("a.mhd.gz", mhd), "unpack it");
   for (const auto& [name, text] : {std::pair{"a.node.gz", "4 3 0 0\n"},
                                    {"a.case.gz", "FORMAT\ntype: ensight gold\n"},
@@ -121,7 +121,7 @@ TEST_F(GzipVolumes, RefusesFormatsOfSeveralFiles) {
                                    {"a.vtm.gz", "<VTKFile type=\"vtkMultiBlockDataSet\"></VTKFile>"}}) {
     if (std::string_view(name) != "a.node.gz" && !has_reader(Reader::vtk)) continue;
     const std::string path = write(name, text);
-    test::expect_bad_input([&] { read_mesh(path); }, {name, "it goes with other files", "unpack it"});
+    test::expect_bad_input([&] { read_mesh(path); }, {name, "it refers to other files", "unpack it"});
   }
 }
 

@@ -67,11 +67,11 @@ TEST_F(NrrdAxes, EveryNameOfASpaceHasItsDirections) {
     const glm::dvec3 wanted = turn * glm::dvec3(10 + 2 * 3, 20 + 3 * 2, 30 + 4);
     const glm::dvec3 found = scene::world_of_index(volume.source->geometry(), {3, 2, 1});
     EXPECT_LT(glm::length(found - wanted), 1e-12) << space.name << ": " << found.x << ' ' << found.y << ' ' << found.z;
-    EXPECT_EQ(has_note(volume, "turned"), turn != glm::dmat3(1.0)) << space.name;
+    EXPECT_EQ(has_note(volume, "converted"), turn != glm::dmat3(1.0)) << space.name;
   }
   const VolumeFile odd = open_volume(write(placed + "left-left-superior"));
   EXPECT_EQ(odd.body_axes, BodyAxes::none);
-  EXPECT_TRUE(has_note(odd, "'left-left-superior' is not known"));
+  EXPECT_TRUE(has_note(odd, "'left-left-superior' is unknown"));
 }
 
 TEST_F(NrrdAxes, MinimumsAndMaximumsPlaceSamplesByTheirCentering) {
@@ -136,7 +136,7 @@ TEST_F(NrrdAxes, KindsAndDirectionsDistinguishListsComponentsAndTime) {
   EXPECT_EQ(all_samples(*planar.source)[1], 25);
   const VolumeFile unstated = open("dimension: 4\nsizes: 2 4 3 2\n");
   EXPECT_EQ(unstated.fields.front().components, 2);
-  EXPECT_TRUE(has_note(unstated, "the first of its 4 axes, of 2 samples, is taken for components"));
+  EXPECT_TRUE(has_note(unstated, "the first of its 4 axes, with 2 samples, is used as components"));
   const std::string first = "dimension: 4\nsizes: 2 4 3 2\nkinds: ";
   EXPECT_EQ(open(first + "list domain domain domain").time_step.count, 2);
   EXPECT_EQ(open(first + "2-vector space space space").fields.front().components, 2);
@@ -146,7 +146,7 @@ TEST_F(NrrdAxes, KindsAndDirectionsDistinguishListsComponentsAndTime) {
   expect_no_volume(write("dimension: 4\nsizes: 4 2 3 2\nkinds: domain list domain domain"),
                    "axis 2 of 4, with 2 samples, is between the axes of space");
   expect_no_volume(write("dimension: 5\nsizes: 2 2 3 2 2\nkinds: time domain domain domain vector"),
-                   "the components have to be its first axis");
+                   "components must be its first axis");
 }
 
 TEST_F(NrrdAxes, UnitsModalityAndLabelsAreKnownFromFieldsAndKeys) {

@@ -150,7 +150,7 @@ TEST_F(VolumeFiles, NiftiOfMoreDimensionsTooManySamplesOrTooFewBytesIsRefused) {
   put<std::int16_t>(file, 40, 5);  // of length one each: still a volume
   EXPECT_NO_THROW(open_volume(folder.write("ones.nii", file)));
   for (const std::size_t at : {42, 44, 46}) put<std::int16_t>(file, at, 30000);
-  expect_refused(folder.write("huge.nii", file), "the file has 48");
+  expect_refused(folder.write("huge.nii", file), "but the file has 48");
   expect_refused(folder.write("short.nii", test::nifti().substr(0, 399)), "48 bytes");
   expect_refused(folder.write("header.nii", test::nifti().substr(0, 200)), "NIfTI header");
   file = test::nifti();
@@ -218,10 +218,10 @@ TEST_F(VolumeFiles, NrrdFaultsAreNamed) {
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 9000 9000 9000\nencoding: text\n"), "of 729000000000 numbers");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nline skip: 9\n"), "fewer lines");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: LIST\na.raw\nb.raw"),
-                 "'a.raw', and there is no such file");
+                 "'a.raw', but there is no such file");
   expect_refused(with("type: uint16\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"),
                  "add a line 'endian: little', or big");
-  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, the file has 8");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, but the file has 8");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 0 1\nencoding: raw\n"), "along y is 0");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 60000 60000 60000\nencoding: gzip\n"), "cannot hold");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: gone\n"), "no such file");
@@ -253,12 +253,12 @@ TEST_F(VolumeFiles, MetaImagePlacesScalesAndReadsLocalAndSeparateSamples) {
                                                                bytes_of(counting<std::uint64_t>(12))))
                              .source),
             counting<double>(12));
-  expect_refused(folder.write("c.mha", head + "ElementDataFile = LOCAL\n" + samples.substr(1)), "the file has 23");
+  expect_refused(folder.write("c.mha", head + "ElementDataFile = LOCAL\n" + samples.substr(1)), "but the file has 23");
   expect_refused(folder.write("d.mha", head), "no ElementDataFile");
   expect_refused(folder.write("e.mhd", "NDims = 2\nElementDataFile = LOCAL\n"), "2 dimensions");
   for (const char* folder_name : {"", ".", "..", "./"})
     expect_refused(folder.write("f.mhd", head + "ElementDataFile = " + folder_name + "\n"),
-                   "f.mhd: ElementDataFile is '" + std::string(folder_name) + "', and there is no such file");
+                   "f.mhd: ElementDataFile is '" + std::string(folder_name) + "', but there is no such file");
 }
 
 TEST_F(VolumeFiles, RawFilesAreDescribedByOptionsOrByName) {
@@ -274,9 +274,9 @@ TEST_F(VolumeFiles, RawFilesAreDescribedByOptionsOrByName) {
   EXPECT_EQ(described.source->geometry().points, (GridIndex{2, 3, 4}));
   EXPECT_EQ(described.source->geometry().spacing, glm::dvec3(1, 2, 0.5));
   expect_refused(folder.write("y.raw", samples), "dimensions and type");
-  expect_refused(folder.write("y_4x3x3_uint16.raw", samples), "72 bytes, the file has 48");
+  expect_refused(folder.write("y_4x3x3_uint16.raw", samples), "72 bytes, but the file has 48");
   expect_refused(folder.write("y_4x3x1_uint16.raw", samples), "1 point along z");
-  expect_refused(folder.write("y_2x3x2_uint16.raw", samples), "24 bytes, the file has 48");
+  expect_refused(folder.write("y_2x3x2_uint16.raw", samples), "24 bytes, but the file has 48");
   expect_refused(folder.write("y.nii", test::nifti()), "`dims`", options);
   expect_refused(folder.path(), "directory");
   expect_refused(folder / "absent.raw", "no such file");
@@ -492,7 +492,7 @@ TEST_F(VolumeFiles, ABrickFileWhoseCountsAreNoWholeNumbersIsRefused) {
     out.close();
     EXPECT_EQ(io::testing::message_of([&] { open_volume(folder / "b.bricks"); }),
               (folder / "b.bricks").string() +
-                  ": its header lacks a word or a number; the file is truncated or damaged, write it again")
+                  ": its header lacks a keyword or a number; the file is truncated or damaged, write it again")
         << word;
   }
 }

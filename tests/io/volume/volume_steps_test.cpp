@@ -123,7 +123,7 @@ TEST_F(VolumeSteps, NiftiVectorsAreInPlanes) {
   for (int c = 0; c < 3; ++c) EXPECT_EQ(samples(named, {.field = fmt::format("samples:{}", c)}), from(24.0 * c));
   EXPECT_NEAR(samples(named)[1], std::sqrt(1.0 + 25.0 * 25 + 49.0 * 49), 1e-5);  // stored as floats
   put<std::int16_t>(file, 48, 2);
-  expect_no_volume(folder.write("both.nii", file), "3 components and 2 steps");
+  expect_no_volume(folder.write("both.nii", file), "3 components and dimension 4 has 2 time steps");
 }
 
 TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
@@ -133,7 +133,7 @@ TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
   put<float>(header, 112, 2);
   const std::string image = std::string(8, 'x') + bytes_of(counting<std::int16_t>(24));
   const auto pair = folder.write("pair.hdr", header);
-  expect_no_volume(pair, "pair.img, which is not there");
+  expect_no_volume(pair, "pair.img, which does not exist");
   folder.write("pair.img", image);
   for (const auto& file : {pair, folder / "pair.img"}) {
     const VolumeFile volume = open_volume(file);
@@ -156,7 +156,7 @@ TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
     EXPECT_EQ(volume.source->geometry().spacing, glm::dvec3(1, 2, 1));
     EXPECT_TRUE(has_note(volume, "left and right"));
   }
-  expect_no_volume(folder.write("lone.img", image), "lone.hdr is not there");
+  expect_no_volume(folder.write("lone.img", image), "lone.hdr does not exist");
   expect_no_volume(folder.write("text.hdr", "ENVI\nsamples = 3\n"), "348");
 }
 
@@ -205,10 +205,10 @@ TEST_F(VolumeSteps, SlicesInFilesAreOneVolume) {
   expect_no_volume(folder.write("odd.mhd", meta + "ElementDataFile = s%s.raw 7 8 1\n"), "FIRST LAST");
   expect_no_volume(folder.write("many.mhd", meta + "ElementDataFile = s%03d.raw 7 7 0\n"), "in steps of 0");
   expect_no_volume(folder.write("short.mhd", meta + "HeaderSize = 8\nElementDataFile = LIST\ns007.raw\ns008.raw\n"),
-                   "is 24 bytes, the file has 20 after its first 8");
+                   "is 24 bytes, but the file has 20 after its first 8");
   std::string long_list = "NDims = 3\nDimSize = 4 2 1\nElementType = MET_SHORT\nElementDataFile = LIST\n";
   for (int k = 0; k < 9; ++k) long_list += "s007.raw\n";
-  expect_no_volume(folder.write("long.mhd", long_list), "more files than the 2 slices");
+  expect_no_volume(folder.write("long.mhd", long_list), "more files than there are slices (2)");
 }
 
 TEST_F(VolumeSteps, MetaImageOfFourDimensionsHasTime) {
