@@ -39,13 +39,13 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
   const auto file = request.at("file").get<std::string>();
   if (const int version = request.at("version").get<int>(); version != io::helper_version)
     throw scene::Error(scene::ErrorCode::system_failure, "the helper program",
-                       fmt::format("it is of another version, {}, than the library, {}", io::helper_version, version),
+                       fmt::format("its version, {}, differs from the library's, {}", io::helper_version, version),
                        "install both again");
   const auto name = request.at("reader").get<std::string>();
   for (const Reader& reader : readers)
     if (name == reader.name) return {{"contents", Json::binary(io::bytes_of(reader.read(holdings, file, request)))}};
   throw scene::Error(scene::ErrorCode::system_failure, "the helper program",
-                     fmt::format("it was built without {}", name), "install it as the library");
+                     fmt::format("it was built without {}", name), "install the one that belongs to the library");
 }
 
 /// Creates an unnamed file with the numbers of an array.
@@ -80,7 +80,7 @@ class Window {
   void put(const Holdings::Held& held, std::uint64_t first, std::uint64_t count, std::size_t slot) {
     if (first > held.array.tuples || count > held.array.tuples - first || count > slot_ / held.array.tuple_bytes() ||
         slot >= slots_.size() / slot_)
-      throw std::invalid_argument("no such tuples, or no room for them");
+      throw std::invalid_argument("these tuples do not exist or do not fit");
     held.read(first, count, slots_.data() + slot * slot_);
   }
 

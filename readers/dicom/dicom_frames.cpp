@@ -136,19 +136,17 @@ void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSli
     if (slots.size() == count) frame.time.value += 1e5 * slots[k];
     if (phases.size() == count) frame.time.value += phases[k];
   }
-  slice.frames_note =
-      file.slices_apart != 0
-          ? fmt::format(
-                "its frames do not state their positions: one after the other, {:.4g} mm apart as its spacing "
-                "between slices",
-                std::abs(apart))
-      : file.thickness > 0
-          ? fmt::format(
-                "its frames do not state their positions: one after the other, {:.4g} mm apart as its slice "
-                "thickness",
-                apart)
-          : "its frames state neither their positions nor their distance: one after the other, 1 mm apart, "
-            "which is wrong if they are times of one image";
+  slice.frames_note = file.slices_apart != 0 ? fmt::format(
+                                                   "its frames do not state their positions: they are placed one after "
+                                                   "the other, {:.4g} mm apart, the stated spacing between slices",
+                                                   std::abs(apart))
+                      : file.thickness > 0
+                          ? fmt::format(
+                                "its frames do not state their positions: they are placed one after the other, {:.4g} "
+                                "mm apart, the stated slice thickness",
+                                apart)
+                          : "its frames state neither their positions nor their distance: they are placed one after "
+                            "the other, 1 mm apart, which is wrong if they show one slice at several times";
 }
 
 }  // namespace

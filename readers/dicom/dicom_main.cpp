@@ -40,7 +40,7 @@ void note_left_out(const std::vector<std::filesystem::path>& files, const std::v
     }
   }
   if (count > 0)
-    notes.push_back(fmt::format("{} DICOM file{} without an image that GDCM can read left out, first {}", count,
+    notes.push_back(fmt::format("left out {} DICOM file{} without an image that GDCM can read; the first is {}", count,
                                 count > 1 ? "s" : "", first));
 }
 
@@ -113,7 +113,7 @@ io::ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std
   }
   if (const auto blank = values.tally.not_finite;
       blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))
-    notes.push_back(fmt::format("{} samples are padding, as the header says, and blank", blank));
+    notes.push_back(fmt::format("{} samples have the padding value that the header states: they are blank", blank));
   if (values.shared > 0)
     notes.push_back(
         fmt::format("{} samples are in several segments; the segment with the largest number is shown", values.shared));
@@ -154,8 +154,8 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
     if (one.empty())
       throw scene::bad_input(
           io::looks_like_dicom(io::read_beginning(file, 132))
-              ? fmt::format("{}: it is DICOM, and GDCM finds no images in it: it is a report, plan or list, or ends "
-                            "within its header; give a directory or a file of slices",
+              ? fmt::format("{}: it is a DICOM file, but GDCM finds no images in it: it is a report, plan or list, or "
+                            "ends within its header; give a directory or a file of slices",
                             source)
               : fmt::format("{}: GDCM finds no images in it; give a directory or a file of slices", source));
     if (one.front().frames > 1) {
@@ -185,7 +185,7 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
     });
     contents.notes.push_back(are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header states",
                                                      first.slope, first.intercept)
-                                       : "slices have scales of their own, which apply");
+                                       : "each slice has its own scale, which is applied");
   }
   contents.labels = !first.segments.type.empty() && first.segments.type != "FRACTIONAL";
   contents.modality = first.modality, contents.unit = first.unit;

@@ -57,18 +57,18 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
                               [&](const auto& a, const auto& b) { return samples_of(a) < samples_of(b); });
   if (chosen->front().components != 1)
     throw scene::bad_input(
-        fmt::format("{}: its images are coloured, with {} numbers a sample; give a series with one number a sample",
+        fmt::format("{}: its images are coloured, with {} numbers per sample; give a series with one number per sample",
                     source, chosen->front().components));
   if (chosen->front().is_mosaic)
     throw scene::bad_input(
-        fmt::format("{}: its slices are side by side in one image (Siemens' mosaic), which is not read; convert it: "
-                    "dcm2niix DIRECTORY",
+        fmt::format("{}: its slices are side by side in one image (Siemens mosaic), which is not supported; convert "
+                    "it: dcm2niix DIRECTORY",
                     source));
   if (groups.size() > 1)
-    notes.push_back(fmt::format(
-        "there are slices of {} series, sizes, spacings or directions; the {} of one are shown; name a file "
-        "of another to show those",
-        groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
+    notes.push_back(
+        fmt::format("there are slices of {} different series, sizes, spacings or directions; only the {} slices of one "
+                    "are shown; name a file of another to show its slices",
+                    groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
   return std::move(*chosen);
 }
 
@@ -98,8 +98,9 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   const auto most =
       std::max_element(stacks.begin(), stacks.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (stacks.size() > 1)
-    notes.push_back(fmt::format("its frames have {} directions or spacings, and only the {} of one are read",
-                                stacks.size(), most->size()));
+    notes.push_back(
+        fmt::format("its frames have {} different directions or spacings, and only the {} frames of one are read",
+                    stacks.size(), most->size()));
   return std::move(*most);
 }
 
@@ -162,7 +163,7 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
   scene::set_times(volume.time_step, times_of(places.front(), least));
   if (most > least)
     volume.notes.push_back(
-        fmt::format("some places have {} slices, others {}; what is beyond is left out", most, least));
+        fmt::format("some positions have {} slices, others {}; the surplus slices are left out", most, least));
   std::vector<DicomSlice> chosen;
   chosen.reserve(places.size());
   for (auto& at : places) chosen.push_back(std::move(at[step]));
@@ -277,13 +278,13 @@ void set_places(DicomVolume& volume) {
     const auto at = static_cast<std::size_t>(most - gaps.begin());
     const double missing = std::round(*most / usual) - 1;
     volume.notes.push_back(fmt::format(
-        "slices are {:.4g} to {:.4g} mm apart, the widest gap after {}{}: a rectilinear grid", *least, *most,
-        slices[at].file.filename().string(),
+        "slices are {:.4g} to {:.4g} mm apart, with the widest gap after {}{}: they are read as a rectilinear grid",
+        *least, *most, slices[at].file.filename().string(),
         missing >= 1 ? fmt::format("; there {:.0f} slice{} may be missing", missing, missing > 1 ? "s" : "") : ""));
   }
   const double tilt = glm::length(glm::cross(glm::normalize(whole), normal));
   if (tilt > 1e-3)
-    volume.notes.push_back(fmt::format("slices are shifted against each other, by {:.1f} degrees",
+    volume.notes.push_back(fmt::format("slices are shifted relative to each other, by {:.1f} degrees",
                                        std::asin(std::min(tilt, 1.0)) * 57.29577951308232));
 }
 
@@ -304,17 +305,18 @@ DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::pat
     throw scene::bad_input(
         fmt::format("{}: all its segments are in one slice, which is not a volume; give a volume", source));
   if (volume.slices.size() == 1 && first.frames > 1)
-    throw scene::bad_input(
-        fmt::format("{}: all its {} frames are at one place: times of one image, not a volume; give a volume", source,
-                    first.frames));
+    throw scene::bad_input(fmt::format(
+        "{}: all its {} frames are at one position: they show one slice at several times, not a volume; give a volume",
+        source, first.frames));
   if (volume.slices.size() == 1)
     throw scene::bad_input(
         fmt::format("{}: it is a single slice, without others of its series next to it; give a "
                     "directory of slices",
                     source));
   if (!first.has_position)
-    volume.notes.push_back(fmt::format(
-        "its files do not state the positions of slices: by their numbers, {:.4g} mm apart", first.spacing.z));
+    volume.notes.push_back(
+        fmt::format("its files do not state the positions of slices: they are placed by their numbers, {:.4g} mm apart",
+                    first.spacing.z));
   else if (volume.slices.size() > 1)
     set_places(volume);
   return volume;

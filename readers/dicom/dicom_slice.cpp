@@ -157,7 +157,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   try {
     if (is_deflated(file))  // GDCM aborts for these, or returns wrong samples if they end early
       throw scene::bad_input(fmt::format(
-          "{}: its data set is deflated, which is not read; dcmtk's `dcmconv +te` writes it plainly", file.string()));
+          "{}: its data set is deflated, which is not supported; convert it with dcmtk: dcmconv +te", file.string()));
     std::ifstream in(file, std::ios::binary);
     gdcm::Reader reader;
     reader.SetStream(in);
@@ -215,7 +215,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   }
   const auto refuse_bits = [&] {
     return scene::bad_input(
-        fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source, slice.bits));
+        fmt::format("{}: its samples have {} bits, which is not supported; write 8, 16 or 32", source, slice.bits));
   };
   if (slice.bits % 8 != 0 && slice.bits != 12) throw refuse_bits();  // GDCM aborts on these
   gdcm::ImageReader reader;
@@ -225,23 +225,23 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   const gdcm::PixelFormat& format = image.GetPixelFormat();
   const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
-    throw refuse("its samples are not as many as its header states");
+    throw refuse("the number of its samples differs from that in its header");
   const std::optional<NumberType> type = number_type_of(format);
   if (!type) throw refuse_bits();
   type_ = *type, bits_ = format.GetBitsStored();
   bytes_.resize(image.GetBufferLength());
   if (!image.GetBuffer(bytes_.data())) throw refuse("GDCM cannot unpack its samples");
-  if (bytes_.size() != samples * io::size_of(type_)) throw refuse("its samples are not as many as its header states");
+  if (bytes_.size() != samples * io::size_of(type_))
+    throw refuse("the number of its samples differs from that in its header");
 }
 
 /// Unpacks bits. The first sample is the lowest bit; neither rows nor frames are byte-aligned (PS3.5, 8.1.1).
 void DicomSamples::take_bits(const DicomSlice& slice) {
   const std::string source = slice.file.string();
   if (slice.is_packed)
-    throw scene::bad_input(
-        fmt::format("{}: its samples of 1 bit are compressed, which is not read; convert it to NRRD by dcmqi's "
-                    "segimage2itkimage",
-                    source));
+    throw scene::bad_input(fmt::format(
+        "{}: its 1-bit samples are compressed, which is not supported; convert it to NRRD by dcmqi's segimage2itkimage",
+        source));
   gdcm::Reader reader;
   reader.SetFileName(slice.file.c_str());
   const gdcm::Tag samples(0x7fe0, 0x0010);

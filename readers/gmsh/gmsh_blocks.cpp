@@ -208,7 +208,7 @@ class Blocks {
   std::uint32_t add_point(std::size_t node, cells::CellBlock& block) {
     if (!apart_ && local_[node] != unused) return local_[node];
     if (used_.size() >= unused)
-      throw scene::bad_input(fmt::format("{}: {} points in one block; split it", source_, used_.size()));
+      throw scene::bad_input(fmt::format("{}: {} points in one block are too many; split it", source_, used_.size()));
     local_[node] = static_cast<std::uint32_t>(used_.size());
     used_.push_back(node);
     const double* const p = &nodes_.coordinates[3 * node];

@@ -28,7 +28,7 @@ const GmshCell& cell_of(int type, std::map<int, GmshCell>& known, std::vector<st
   else if (of.corners >= 4 && of.corners <= 8 && of.corners != 7 && of.places.size() == 3 * of.nodes)
     found->second = gmsh_cell(of.order, of.corners, of.places);
   if (found->second.by_corners)
-    notes.push_back(fmt::format("cells of type {} are rendered as linear ones by their corner nodes", of.name));
+    notes.push_back(fmt::format("cells of type {} are rendered as linear cells with the same corners", of.name));
   return found->second;
 }
 

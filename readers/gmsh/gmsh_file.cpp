@@ -84,7 +84,7 @@ void require_last_section(const std::filesystem::path& file) {
   const std::string_view words = std::string_view(end).substr(line == std::string::npos ? 0 : line + 1);
   if (!words.starts_with("$End") && words != "$ENDELM" && words != "$ENDNOD")
     throw scene::bad_input(fmt::format(
-        "{}: it does not end with the end of a section, $End...; it is truncated, write it again", file.string()));
+        "{}: its last section is not closed by a line $End...; it is truncated, write it again", file.string()));
 }
 
 bool has_values(const std::filesystem::path& file) {
@@ -130,8 +130,8 @@ io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& f
   } catch (const std::bad_alloc&) {
     if (!has_values(file)) throw;
     throw memory_error(source,
-                       "its values take more memory than a file of its size can need: Gmsh's library takes some for "
-                       "each number up to the largest of a node or element; number these from 1");
+                       "its values need more memory than a file of its size should: Gmsh's library allocates memory "
+                       "for every number up to the largest node or element number; number nodes and elements from 1");
   }
   return contents_of_model(holdings, source, request, "Gmsh", file);
 }

@@ -36,9 +36,9 @@ class Universal {
     require_new_datasets();
     for (const auto& [system, point] : points_in_)
       if (const auto what = other_systems_.find(system); what != other_systems_.end())
-        throw scene::bad_input(
-            fmt::format("{}: point {} is in the coordinate system {}, which is {}; export points in the global one",
-                        source_, point, system, what->second));
+        throw scene::bad_input(fmt::format(
+            "{}: point {} is in the coordinate system {}, which is {}; export points in the global coordinate system",
+            source_, point, system, what->second));
   }
 
  private:
@@ -110,7 +110,7 @@ class Universal {
       if (type != 0)
         other_systems_[system] = type == 1 ? "cylindrical" : "spherical";
       else if (!is_global)
-        other_systems_[system] = "turned or moved";
+        other_systems_[system] = "rotated or moved";
       if (is_mark()) break;
     }
     is_again_ = is_mark();
@@ -122,8 +122,8 @@ class Universal {
       for (const long old : old_datasets)
         if (known_.contains(old) && !known_.contains(now))
           throw scene::bad_input(
-              fmt::format("{}: its {} are in dataset {}, of old versions, and Gmsh's library reads dataset {} alone; "
-                          "export it by a newer version, or in another format",
+              fmt::format("{}: its {} are in dataset {}, which older versions wrote, but Gmsh's library reads only "
+                          "dataset {}; export it with a newer version, or in another format",
                           source_, what, old, now));
   }
 

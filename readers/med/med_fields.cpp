@@ -52,7 +52,7 @@ std::vector<std::size_t> places_of(const MedFile& file, const std::string& profi
   }
   file.require(std::all_of(places.begin(), places.end(), [&](std::size_t at) { return at < count; }) &&
                    (!profile.empty() || values == count),
-               "a field whose number of values is not that of the nodes or cells");
+               "a field whose number of values differs from that of the nodes or cells");
   return places;
 }
 

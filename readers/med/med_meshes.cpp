@@ -88,7 +88,7 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
   // cells.
   if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 1)
     throw scene::bad_input(fmt::format(
-        "{}: mesh '{}' has polyhedra, which are not read; have them split, or write .vtu", file.source(), mesh.name));
+        "{}: mesh '{}' has polyhedra, which are not supported; split them, or write .vtu", file.source(), mesh.name));
 }
 
 /// Returns a name up to the first zero byte, without padding blanks.
@@ -160,7 +160,7 @@ std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& n
         (axis_type != MED_CARTESIAN && axis_type != MED_CYLINDRICAL)) {
       notes.push_back(fmt::format("mesh '{}' is {} and is left out", mesh.name,
                                   type != MED_UNSTRUCTURED_MESH ? "structured"
-                                  : dimensions != 3             ? "not in space"
+                                  : dimensions != 3             ? "not three-dimensional"
                                                                 : "in spherical coordinates"));
       continue;
     }
@@ -178,8 +178,9 @@ std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& n
     meshes.push_back(std::move(read));
   }
   if (meshes.empty())
-    throw scene::bad_input(fmt::format("{}: it holds no unstructured mesh in space{}{}; give one in x, y and z",
-                                       file.source(), notes.empty() ? "" : ": ", fmt::join(notes, ", ")));
+    throw scene::bad_input(
+        fmt::format("{}: it has no unstructured three-dimensional mesh{}{}; give a mesh in x, y and z", file.source(),
+                    notes.empty() ? "" : ": ", fmt::join(notes, ", ")));
   return meshes;
 }
 

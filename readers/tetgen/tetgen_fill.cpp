@@ -198,7 +198,7 @@ io::ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path
   try {
     return fill_with_fields(holdings, surface, source, request);
   } catch (const std::bad_alloc&) {
-    throw memory_error(source, fmt::format("filling it by TetGen takes more memory than its {} facets can explain; {}",
+    throw memory_error(source, fmt::format("filling it by TetGen takes much more memory than {} facets should take; {}",
                                            surface.facets.size(), request.at("limit_remedy").get<std::string>()));
   }
 }

@@ -82,7 +82,7 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
       },
       {"Inconsistent spacing", "tracer particles", "data does not exist in file"});
   if (failures.any())
-    throw scene::bad_input(fmt::format("{}: HDF5 cannot read all that belongs to it; {}", source, write_again));
+    throw scene::bad_input(fmt::format("{}: HDF5 cannot read all files that belong to it; {}", source, write_again));
   // Warnings of these readers mean a damaged file, except for spacings whose last bits differ from block to block,
   // particles, and fields that some blocks do not have.
   if (!warning.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, warning, write_again));
@@ -128,13 +128,13 @@ void require_grids(const std::filesystem::path& hierarchy) {
     if (key == "Pointer:" && !is_pointer(line, grids)) throw refuse("it does not state which grid comes next");
     const auto* const known = std::find(keys.begin(), keys.end(), key);
     if (known == keys.end()) continue;
-    if (*known != keys[next]) throw refuse(fmt::format("{} where {} is wanted", key, keys[next]));
+    if (*known != keys[next]) throw refuse(fmt::format("it has {} where {} is required", key, keys[next]));
     if (!has_values(line, next >= 1 && next <= 4)) throw refuse(fmt::format("{} has no values", key));
     if (next == 0) ++grids;
     next = (next + 1) % keys.size();
   }
   if (grids == 0 || next != 0)
-    throw refuse(fmt::format("the file ends after {} grids where {} is wanted", grids, keys[next]));
+    throw refuse(fmt::format("the file ends after {} grids where {} is required", grids, keys[next]));
 }
 
 }  // namespace
@@ -152,13 +152,13 @@ io::ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& n
   if (file.extension() == ".boundary") file.replace_extension(".hierarchy");
   if (file.extension() != ".hierarchy")
     throw scene::bad_input(
-        fmt::format("{}: the name of an Enzo data set ends with .hierarchy; name it so again", named.string()));
+        fmt::format("{}: the name of an Enzo data set has to end with .hierarchy; rename it", named.string()));
   std::filesystem::path parameters = file;
   parameters.replace_extension();
   for (const std::filesystem::path& needed : {file, parameters})
     if (std::error_code unknown; !std::filesystem::is_regular_file(needed, unknown))
-      throw scene::bad_input(fmt::format("{}: {}, which belongs to it, is not there; put it next to it", named.string(),
-                                         needed.filename().string()));
+      throw scene::bad_input(fmt::format("{}: {}, which belongs to it, does not exist; put that file next to it",
+                                         named.string(), needed.filename().string()));
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), true);
   require_grids(file);
   // The limit of open files is raised, because VTK's reader never closes the files that it opens.

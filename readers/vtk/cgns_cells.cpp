@@ -223,7 +223,7 @@ class Cells {
     if (solid == nullptr) {
       if (is_below_three(type)) return;
       refuse(zone_, section,
-             fmt::format("has elements {}, which are not read; export elements of order 1 to 3",
+             fmt::format("has elements {}, which are not supported; export elements of order 1 to 3",
                          cg_ElementTypeName(type)));
     }
     if (nodes.size() < solid->nodes)
@@ -260,8 +260,7 @@ class Cells {
       const std::optional<Face> nodes = face(std::abs(number));
       if (!nodes)
         throw scene::bad_input(
-            fmt::format("{}: a polyhedron uses face {}, which no section has; the file is damaged, "
-                        "export it again",
+            fmt::format("{}: a polyhedron uses face {}, which is in no section; the file is damaged, export it again",
                         zone_.where, number));
       block_.faces.push_back(static_cast<std::uint32_t>(nodes->size()));
       for (const cgsize_t node : *nodes) {

@@ -100,7 +100,7 @@ std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& sol
   const std::size_t axes = size.size(), count = product(zone, of_cells);
   const bool is_range = solution.set == CGNS_ENUMV(PointRange);
   if (solution.in_set < 1 || static_cast<std::size_t>(solution.in_set) > std::max<std::size_t>(2, count))
-    throw scene::bad_input(fmt::format("{}: solution '{}' is of {} of {} {}; export the file again", zone.where,
+    throw scene::bad_input(fmt::format("{}: solution '{}' has values at {} of {} {}; export the file again", zone.where,
                                        solution.name, solution.in_set, count, of_cells ? "cells" : "points"));
   std::vector<cgsize_t> indices(axes * static_cast<std::size_t>(solution.in_set));
   require_cgns(cg_sol_ptset_read(zone.file, zone.base, zone.zone, solution.number, indices.data()), zone);

@@ -140,7 +140,7 @@ void set_positions(const CgnsZone& zone, std::uint64_t step, cells::CellBlock& b
     std::size_t count = 1;
     for (int d = 0; d < dimensions; ++d) count *= static_cast<std::size_t>(size[static_cast<std::size_t>(d)]);
     if (has_rind || count != points)
-      throw scene::bad_input(fmt::format("{}: its coordinates are {} numbers for {} points{}; export it without rind",
+      throw scene::bad_input(fmt::format("{}: its coordinates have {} numbers for {} points{}; export it without rind",
                                          zone.where, count, points, has_rind ? ", with rind" : ""));
     require_cgns(cg_array_read_as(a, CGNS_ENUMV(RealDouble), values.data()), zone);
     for (std::size_t v = 0; v < points; ++v) block.positions[v][static_cast<int>(axis)] = values[v];
@@ -149,8 +149,8 @@ void set_positions(const CgnsZone& zone, std::uint64_t step, cells::CellBlock& b
   }
   if (found != 3)
     throw scene::bad_input(
-        fmt::format("{}: it has {} of {}, {} and {}; other coordinates are not read, export CoordinateX, CoordinateY "
-                    "and CoordinateZ",
+        fmt::format("{}: it has {} of {}, {} and {}; other coordinates are not supported, export CoordinateX, "
+                    "CoordinateY and CoordinateZ",
                     zone.where, found, axes[0], axes[1], axes[2]));
   if (axes == cartesian_axes) return;
   const double unit = has_degrees(zone, grid, angles) ? std::numbers::pi / 180 : 1;

@@ -12,7 +12,7 @@ ExodusFaces::Lists ExodusFaces::read(ex_entity_type type, std::int64_t id, std::
                                      std::int64_t total) const {
   if (count < 0 || total < 0 || static_cast<std::uint64_t>(count) > most_values_ ||
       static_cast<std::uint64_t>(total) > most_values_)
-    fail_(fmt::format("block {} promises {} parts of {} numbers", id, count, total));
+    fail_(fmt::format("block {} states {} parts of {} numbers", id, count, total));
   Lists lists;
   if (count == 0) return lists;
   lists.sizes.resize(static_cast<std::size_t>(count));
@@ -36,7 +36,7 @@ void ExodusFaces::read_faces() {
   starts_.assign(1, 0);
   const std::int64_t blocks = ex_inquire_int(id_, EX_INQ_FACE_BLK);
   if (blocks < 0 || static_cast<std::uint64_t>(blocks) > most_values_)
-    fail_(fmt::format("it promises {} face blocks", blocks));
+    fail_(fmt::format("it states {} face blocks", blocks));
   std::vector<std::int64_t> ids(static_cast<std::size_t>(std::max<std::int64_t>(blocks, 0)));
   if (!ids.empty() && ex_get_ids(id_, EX_FACE_BLOCK, ids.data()) < 0) fail_("the face blocks cannot be read");
   for (const std::int64_t id : ids) {
@@ -65,14 +65,15 @@ void ExodusFaces::add(std::int64_t id, const ex_block& info, std::int64_t points
     for (int k = 0; k < size; ++k) {
       const std::int64_t number = cells.numbers[next++];
       if (number < 1 || static_cast<std::size_t>(number) >= starts_.size())
-        fail_(fmt::format("block {} has face {}, the file holds {}", id, number, starts_.size() - 1));
+        fail_(
+            fmt::format("block {} refers to face {}, but the file has only {} faces", id, number, starts_.size() - 1));
       const auto face = static_cast<std::size_t>(number) - 1;
       // At most two cells share a face. More uses could make the data many times as large as the file.
-      if (++times_used_[face] > 2) fail_(fmt::format("face {} is of more than two elements", number));
+      if (++times_used_[face] > 2) fail_(fmt::format("face {} belongs to more than two elements", number));
       block.faces.push_back(static_cast<std::uint32_t>(starts_[face + 1] - starts_[face]));
       for (std::size_t v = starts_[face]; v < starts_[face + 1]; ++v) {
         if (corners_[v] < 1 || corners_[v] > points)
-          fail_(fmt::format("face {} uses node {}, the file holds {}", number, corners_[v], points));
+          fail_(fmt::format("face {} uses node {}, but the file has only {} nodes", number, corners_[v], points));
         block.faces.push_back(static_cast<std::uint32_t>(corners_[v] - 1));
       }
     }

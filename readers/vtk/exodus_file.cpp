@@ -44,7 +44,7 @@ class ExodusFile {
     nc_close(id_);
     if (size < least) {
       id_ = -1;
-      fail(fmt::format("it has {} bytes of at least {}", size, least));
+      fail(fmt::format("it has {} bytes, but needs at least {}", size, least));
     }
     ex_opts(0);  // makes the library print no messages
     int double_size = sizeof(double), file_size = 0;
@@ -239,8 +239,9 @@ class Reading {
         faces_(file_->id(), most_values_, [file = file_.get()](const std::string& what) { file->fail(what); }) {
     file_->require(ex_get_init_ext(file_->id(), &init_), "the header");
     if (init_.num_dim == 1 || init_.num_dim == 2)
-      throw scene::bad_input(fmt::format("{}: it is {}-dimensional, so there is no volume in it; give a mesh in space",
-                                         source_, init_.num_dim));
+      throw scene::bad_input(
+          fmt::format("{}: it is {}-dimensional, so there is no volume in it; give a three-dimensional mesh", source_,
+                      init_.num_dim));
     if (init_.num_dim != 3) file_->fail(fmt::format("its points have {} coordinates, not 3", init_.num_dim));
     check_count("nodes", init_.num_nodes, 3);
     check_count("elements", init_.num_elem, 1);
@@ -257,14 +258,14 @@ class Reading {
  private:
   void check_count(const char* what, std::int64_t n, std::uint64_t values_each) const {
     if (n < 0 || static_cast<std::uint64_t>(n) > most_values_ / values_each)
-      file_->fail(fmt::format("it promises {} {}", n, what));
+      file_->fail(fmt::format("it states {} {}", n, what));
   }
 
   void choose_step(std::optional<std::size_t> requested) {
     const std::int64_t steps = std::max<std::int64_t>(ex_inquire_int(file_->id(), EX_INQ_TIME), 0);
     check_count("time steps", steps, 1);
     result_.time_step = scene::chosen_step(requested, static_cast<std::uint64_t>(steps), source_);
-    if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
+    if (steps > INT32_MAX) file_->fail(fmt::format("it states {} time steps", steps));
     std::vector<double> times(static_cast<std::size_t>(steps));
     if (steps > 0 && ex_get_all_times(file_->id(), times.data()) >= 0)
       scene::set_times(result_.time_step, std::move(times));
@@ -329,7 +330,7 @@ class Reading {
     const bool has_corners = (type != CellType::quad || is_faces(info)) && type != CellType::polyhedron;
     const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(has_corners ? info.num_nodes_per_entry : 0, 0));
     if (nodes > 0 && count > most_values_ / nodes)
-      file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
+      file_->fail(fmt::format("it states {} elements with {} nodes", count, nodes));
     // Only the corners of faces are used.
     const std::string topology = exodus_topology(info);
     const bool is_triangle = topology.starts_with("TRI") || nodes == 3 || nodes == 6 || nodes == 7;
@@ -343,8 +344,8 @@ class Reading {
       for (std::size_t k = 0; k < corner.size(); ++k) {
         if (corner[k] < 1 || corner[k] > init_.num_nodes)
           throw scene::bad_input(
-              fmt::format("{}: element {} of block {} uses node {}, the file holds {}; write elements "
-                          "and nodes from one mesh",
+              fmt::format("{}: element {} of block {} uses node {}, but the file has only {} nodes; write elements and "
+                          "nodes from one mesh",
                           source_, k / nodes + 1, id, corner[k], init_.num_nodes));
         block_.connectivity.push_back(static_cast<std::uint32_t>(corner[k] - 1));
       }
@@ -385,10 +386,9 @@ class Reading {
     if (step > 0) {
       for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL))) {
         if (const std::size_t numbers = file_->numbers_a_node(variable.indices.front()); numbers > 1) {
-          result_.notes.push_back(
-              fmt::format("field '{}' is left out: it has {} numbers a node in one variable; write "
-                          "a variable for each",
-                          variable.name, numbers));
+          result_.notes.push_back(fmt::format(
+              "field '{}' is left out: it has {} numbers per node in one variable; write a variable for each number",
+              variable.name, numbers));
           continue;
         }
         block_.fields.push_back(make_field(variable, scene::Association::point, nodes,
@@ -424,10 +424,8 @@ class Reading {
       for (std::size_t b = 0; b < blocks_.size(); ++b)
         has.push_back(truth[b * count + static_cast<std::size_t>(variable.indices.front() - 1)]);
       if (std::find(has.begin(), has.end(), 0) != has.end())
-        result_.notes.push_back(
-            fmt::format("field '{}' is missing in some element blocks: with it their cells are "
-                        "blanked",
-                        variable.name));
+        result_.notes.push_back(fmt::format(
+            "field '{}' is missing in some element blocks: when it is shown, their cells are blanked", variable.name));
       block_.fields.push_back(make_field(
           variable, scene::Association::cell, block_.types.size(),
           [file = file_, step = step_, blocks = blocks_, has](int index, std::size_t first, std::span<double> out) {

@@ -17,7 +17,7 @@ namespace {
 
 std::vector<std::int64_t> ids_of(int file, ex_entity_type type, std::int64_t count, std::uint64_t most_values,
                                  const std::function<void(const std::string&)>& fail) {
-  if (count < 0 || static_cast<std::uint64_t>(count) > most_values) fail(fmt::format("it promises {} sets", count));
+  if (count < 0 || static_cast<std::uint64_t>(count) > most_values) fail(fmt::format("it states {} sets", count));
   std::vector<std::int64_t> ids(static_cast<std::size_t>(count));
   if (!ids.empty() && ex_get_ids(file, type, ids.data()) < 0) fail("the sets cannot be read");
   return ids;
@@ -32,8 +32,8 @@ void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids,
                       name = given.empty() ? fmt::format("{} {}", what, id) : given;
     if (std::ranges::find(choice, name) != choice.end())
       throw scene::bad_input(fmt::format(
-          "{}: {} is a {}, which holds {} and no volume; name element blocks or element "
-          "sets, which `tessera info` lists{}",
+          "{}: {} is a {}, which contains {} and no volume; name element blocks or element sets, which `tessera info` "
+          "lists{}",
           source, scene::quote(name), what, holds, type == EX_SIDE_SET ? " (`surface` shows side sets)" : ""));
   }
 }
@@ -56,15 +56,15 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const cells::BlockCho
     std::int64_t count = 0, factors = 0;
     if (ex_get_set_param(id, EX_ELEM_SET, set, &count, &factors) < 0) fail("an element set cannot be read");
     if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
-      fail(fmt::format("it promises an element set of {} elements", count));
+      fail(fmt::format("it states an element set of {} elements", count));
     std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
     if (!numbers.empty() && ex_get_set(id, EX_ELEM_SET, set, numbers.data(), nullptr) < 0)
       fail("an element set cannot be read");
     for (const std::int64_t number : numbers) {
       if (number < 1 || number > init.num_elem)
         throw scene::bad_input(
-            fmt::format("{}: the element set {} names element {}, the file holds {}; write sets and "
-                        "elements from one mesh",
+            fmt::format("{}: the element set {} refers to element {}, but the file has only {} elements; write sets "
+                        "and elements from one mesh",
                         source, scene::quote(names_.back()), number, init.num_elem));
       elements_.push_back(static_cast<std::uint64_t>(number) - 1);
     }
@@ -115,7 +115,7 @@ bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::
     const auto each = static_cast<std::size_t>(blocks[of].nodes);
     if (nodes[of].empty()) {
       if (each == 0 || blocks[of].end - first > most_values / each)
-        fail(fmt::format("it promises {} elements of {} nodes", blocks[of].end - first, blocks[of].nodes));
+        fail(fmt::format("it states {} elements with {} nodes", blocks[of].end - first, blocks[of].nodes));
       nodes[of].resize(each * (blocks[of].end - first));
       if (ex_get_conn(file, EX_ELEM_BLOCK, blocks[of].id, nodes[of].data(), nullptr, nullptr) < 0)
         fail("the elements cannot be read");
@@ -123,7 +123,8 @@ bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::
     for (const std::uint8_t corner : exodus_side(blocks[of].topology, sides[face])) {
       if (corner >= each) fail(fmt::format("block {} has elements of {} nodes", blocks[of].id, each));
       const std::int64_t node = nodes[of][(static_cast<std::uint64_t>(elements[face]) - 1 - first) * each + corner];
-      if (node < 1 || node > points) fail(fmt::format("a side set names node {} of {}", node, points));
+      if (node < 1 || node > points)
+        fail(fmt::format("a side set refers to node {}, but there are only {} nodes", node, points));
       block.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
     }
     block.types.push_back(polygon);
@@ -140,14 +141,14 @@ void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t mos
   std::int64_t count = 0, factors = 0, length = 0;
   if (ex_get_set_param(file, EX_SIDE_SET, id, &count, &factors) < 0) fail("a side set cannot be read");
   if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
-    fail(fmt::format("it promises a side set of {} faces", count));
+    fail(fmt::format("it states a side set of {} faces", count));
   if (count == 0) return;
   std::vector<std::int64_t> elements(static_cast<std::size_t>(count)), sides(elements.size());
   if (ex_get_set(file, EX_SIDE_SET, id, elements.data(), sides.data()) < 0) fail("a side set cannot be read");
   if (add_sides_of_solids(file, elements, sides, points, most_values, fail, blocks, block)) return;
   if (ex_get_side_set_node_list_len(file, id, &length) < 0) fail("a side set cannot be read");
   // An element has at most 32 nodes in one face.
-  if (length < 0 || length > 32 * count) fail(fmt::format("it promises a side set of {} corners", length));
+  if (length < 0 || length > 32 * count) fail(fmt::format("it states a side set of {} corners", length));
   std::vector<std::int64_t> counts(static_cast<std::size_t>(count)), nodes(static_cast<std::size_t>(length));
   if (ex_get_side_set_node_list(file, id, counts.data(), nodes.data()) < 0) fail("a side set cannot be read");
   std::size_t at = 0;
@@ -157,7 +158,8 @@ void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t mos
     const std::int64_t corners = size == 6 || size == 7 ? 3 : size == 8 || size == 9 ? 4 : size;
     for (std::int64_t k = 0; k < corners; ++k) {
       const std::int64_t node = nodes[at + static_cast<std::size_t>(k)];
-      if (node < 1 || node > points) fail(fmt::format("a side set names node {} of {}", node, points));
+      if (node < 1 || node > points)
+        fail(fmt::format("a side set refers to node {}, but there are only {} nodes", node, points));
       block.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
     }
     block.types.push_back(polygon);

@@ -46,8 +46,8 @@ class Descent {
     const std::size_t first = forest_.z_first ? 2 : 0, last = forest_.z_first ? 0 : 2;
     const auto& n = forest_.roots;
     if (root < 0 || root / n[first] / n[1] >= n[last])
-      throw scene::bad_input(fmt::format("{}: tree {} is that of cell {}, the grid has {} x {} x {} cells; {}", source_,
-                                         t, root, n[0], n[1], n[2], remedy));
+      throw scene::bad_input(fmt::format("{}: tree {} belongs to cell {}, but the grid has {} x {} x {} cells; {}",
+                                         source_, t, root, n[0], n[1], n[2], remedy));
     Node node{{}, false};
     node.low[first] = static_cast<std::int32_t>(root % n[first]);
     node.low[1] = static_cast<std::int32_t>(root / n[first] % n[1]);
@@ -133,8 +133,9 @@ class Descent {
   }
 
   [[noreturn]] void refuse_count(std::size_t t, std::size_t cells) const {
-    throw scene::bad_input(fmt::format("{}: tree {} has {} cells or more by its divisions, {} by its counts; {}",
-                                       source_, t, cells, forest_.trees[t].cells, remedy));
+    throw scene::bad_input(
+        fmt::format("{}: tree {} has {} cells or more according to its divisions, but {} according to its counts; {}",
+                    source_, t, cells, forest_.trees[t].cells, remedy));
   }
 
   const StoredForest& forest_;

@@ -102,8 +102,8 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
     const Piece piece{file.parent_path() / *name, extent_of(element, "Extent")};
     if (cells_in(piece.extent) == 0) return;
     if (!holds(whole.extent, piece.extent))
-      throw io::damaged(file, fmt::format("a piece has the points {}, the whole has {}", fmt::join(piece.extent, " "),
-                                          fmt::join(whole.extent, " ")));
+      throw io::damaged(file, fmt::format("a piece has the points {}, but the whole has {}",
+                                          fmt::join(piece.extent, " "), fmt::join(whole.extent, " ")));
     whole.pieces.push_back(piece);
   });
   std::vector<Extent> extents;
@@ -265,11 +265,11 @@ class Assembly {
                      const Piece& piece) const {
     const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
     if (found != wanted)
-      throw scene::bad_input(fmt::format("{}: its {} is {}, another piece of {} has it as {}; write them again",
+      throw scene::bad_input(fmt::format("{}: its {} is {}, but that of another piece of {} is {}; write them again",
                                          piece.file.string(), name, found, file_.string(), wanted));
     if (own->GetNumberOfTuples() != in_piece.total())
-      throw io::damaged(piece.file, fmt::format("its {} has {} numbers for {} places", name, own->GetNumberOfTuples(),
-                                                in_piece.total()));
+      throw io::damaged(piece.file, fmt::format("its {} has {} numbers for {} points or cells", name,
+                                                own->GetNumberOfTuples(), in_piece.total()));
   }
 
   void take_points(vtkStructuredGrid& data, const Extent& held, const Piece& piece) {
@@ -298,11 +298,11 @@ class Assembly {
     for (std::size_t a = 0; a < 3; ++a) {
       const int points = held[2 * a + 1] - held[2 * a] + 1;
       if (!own[a] || own[a]->GetNumberOfTuples() != points || own[a]->GetNumberOfComponents() != 1)
-        throw io::damaged(piece.file, fmt::format("it has {} coordinates along {} for {} points",
+        throw io::damaged(piece.file, fmt::format("it has {} coordinates along {}, but {} points",
                                                   own[a] ? own[a]->GetNumberOfTuples() : 0, "xyz"[a], points));
       if (!rises_or_falls(*own[a]))
         throw io::damaged(piece.file,
-                          fmt::format("its coordinates along {} neither rise nor fall throughout", "xyz"[a]));
+                          fmt::format("its coordinates along {} are neither increasing nor decreasing", "xyz"[a]));
       if (is_first_) {
         const int first = whole_.extent[2 * a], last = whole_.extent[2 * a + 1];
         coordinates_[a] = vtkSmartPointer<vtkDataArray>::Take(own[a]->NewInstance());
@@ -321,10 +321,9 @@ class Assembly {
         // Each coordinate was rounded once or twice from that of the same grid.
         const double most = 4 * std::max(rounding_of(*own[a]), rounding_of(*coordinates_[a])) * std::abs(before);
         if (!(std::abs(x - before) <= most))
-          throw scene::bad_input(
-              fmt::format("{}: its point {} along {} is at {:.9g}, another piece of {} has it at {:.9g}; write them "
-                          "again",
-                          piece.file.string(), i, "xyz"[a], x, file_.string(), before));
+          throw scene::bad_input(fmt::format(
+              "{}: its point {} along {} is at {:.9g}, but that of another piece of {} is at {:.9g}; write them again",
+              piece.file.string(), i, "xyz"[a], x, file_.string(), before));
       }
     }
   }

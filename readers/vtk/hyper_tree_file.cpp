@@ -89,7 +89,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     // Deflate packs at best 1032 bytes of eight bits into one byte.
     if (static_cast<double>(count) > 9000.0 * static_cast<double>(file_size))
       throw damaged(
-          fmt::format("array {} has {} numbers, more than a file of its size holds", name_of(element), count));
+          fmt::format("array {} has {} numbers, more than a file of this size can contain", name_of(element), count));
     array->SetNumberOfTuples(tuples);
     if (array->GetNumberOfValues() != count || (count > 0 && array->GetVoidPointer(0) == nullptr))
       throw std::bad_alloc();
@@ -124,9 +124,9 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     vtkXMLDataElement* const trees = grid->LookupElementWithName("Trees");
     if (trees == nullptr) throw damaged("it has no <Trees>");
     if (GetFileMajorVersion() > 2)
-      throw scene::bad_input(
-          fmt::format("{}: it has version {} of the format, up to 2 is read; save it as .vtu in ParaView", source,
-                      GetFileMajorVersion()));
+      throw scene::bad_input(fmt::format(
+          "{}: it has version {} of the format, but only versions up to 2 are supported; save it as .vtu in ParaView",
+          source, GetFileMajorVersion()));
     if (GetFileMajorVersion() == 2)
       read_trees_together(*grid, *trees);
     else
@@ -137,8 +137,9 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
   void read_grid(vtkXMLDataElement& grid) {
     grid.GetScalarAttribute("BranchFactor", forest.branching);
     if (forest.branching != 2 && forest.branching != 3)
-      throw scene::bad_input(fmt::format("{}: its cells are divided by {}, HyperTreeGrids' by 2 or 3; write it again",
-                                         source, forest.branching));
+      throw scene::bad_input(
+          fmt::format("{}: its cells are divided by {}, but those of a HyperTreeGrid by 2 or 3; write it again", source,
+                      forest.branching));
     int transposed = 0;
     grid.GetScalarAttribute("TransposedRootIndexing", transposed);
     forest.z_first = transposed != 0;
@@ -147,7 +148,8 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     grid.GetVectorAttribute("Dimensions", 3, points.data());
     const auto flat = std::count_if(points.begin(), points.end(), [](int n) { return n <= 1; });
     if (flat > 0)
-      throw scene::bad_input(fmt::format("{}: its trees have {} dimensions; give a grid of three", source, 3 - flat));
+      throw scene::bad_input(
+          fmt::format("{}: its trees have {} dimensions; give a three-dimensional grid", source, 3 - flat));
     vtkXMLDataElement* const axes = grid.LookupElementWithName("Grid");
     if (axes == nullptr) throw damaged("it has no <Grid>");
     for (std::size_t a = 0; a < 3; ++a) {
@@ -177,7 +179,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       StoredTree tree{whole(*roots, t), cells, 0, bit, 0, cells, 0};
       std::size_t last = 0;
       for (std::int64_t depth = whole(*depths, t); depth > 0; --depth) {
-        if (next >= counts->GetNumberOfTuples()) throw damaged("it has fewer counts of levels than levels");
+        if (next >= counts->GetNumberOfTuples()) throw damaged("it has fewer counts of cells than levels");
         const std::int64_t count = whole(*counts, next++);
         if (count < 0 || count > most_numbers) throw damaged(fmt::format("a level has {} cells", count));
         last = static_cast<std::size_t>(count), tree.cells += last;
@@ -187,7 +189,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       if (mask != nullptr) tree.masks = tree.cells;
       // Checked so that the sums do not overflow, and no arrays are allocated that the divisions do not explain.
       if (bit > bits || cells > 27 * bits + static_cast<std::size_t>(t) + 1)
-        throw damaged(fmt::format("tree {} has {} cells, for which it has too few divisions", t, tree.cells));
+        throw damaged(fmt::format("tree {} has {} cells, but too few divisions for them", t, tree.cells));
       forest.trees.push_back(tree);
     }
     // VTK also writes the number of bits that it had in memory, which may be larger, so that number is not used.
@@ -211,7 +213,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       tree.bits = add_bits(element, "Descriptor", forest.divided);
       tree.masks = add_bits(element, "Mask", forest.masked);
       if (count < 1 || tree.cells > 27 * tree.bits + 1)
-        throw damaged(fmt::format("tree {} has {} cells and {} divisions", t, count, tree.bits));
+        throw damaged(fmt::format("tree {} has {} cells, which does not match its {} divisions", t, count, tree.bits));
       cells += tree.cells;
       forest.trees.push_back(tree);
       vtkXMLDataElement* data = element.FindNestedElementWithName("CellData");
@@ -292,7 +294,7 @@ io::ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::
     ForestLeaves leaves = leaves_of(reader->forest, source);
     if (leaves.masked > 0) contents.notes.push_back(fmt::format("{} cells are masked and left out", leaves.masked));
     if (reader->has_interfaces)
-      contents.notes.emplace_back("interfaces within cells are not read: cells are taken whole");
+      contents.notes.emplace_back("interfaces within cells are not supported: whole cells are used");
     if (leaves.level.empty()) return;
     io::ForeignPart part;
     part.kind = io::ForeignPart::Kind::trees;

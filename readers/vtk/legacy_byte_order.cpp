@@ -110,7 +110,7 @@ void require_big_endian(const std::filesystem::path& file) {
   if (title == std::string_view::npos || !text.substr(coding + 1).starts_with("BINARY") || !is_little_endian(text))
     return;
   throw scene::bad_input(
-      fmt::format("{}: its binary numbers are little-endian, and legacy VTK files have them big-endian; swap their "
+      fmt::format("{}: its binary numbers are little-endian, but legacy VTK files must be big-endian; swap their "
                   "bytes, or export text or .vtu",
                   file.string()));
 }

@@ -55,7 +55,7 @@ bool is_any_number(std::string_view word) {
 }
 
 std::string odd_word(std::string_view word, const char* expected) {
-  return fmt::format("{} is where {} is expected", scene::quote(std::string(word)), expected);
+  return fmt::format("it has {} where {} is expected", scene::quote(std::string(word)), expected);
 }
 
 /// Returns the fault in a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type); empty if

@@ -56,8 +56,8 @@ void require_linear_gambit(const std::filesystem::path& file) {
     const Type& known = types[static_cast<std::size_t>(*type)];
     if (*nodes > known.nodes)
       throw scene::bad_input(
-          fmt::format("{}: element {} is a {} of {} nodes, and VTK's reader supports linear ones only; export CGNS or "
-                      "EnSight Gold, or a linear mesh",
+          fmt::format("{}: element {} is a {} of {} nodes, but VTK's reader supports only linear elements; export CGNS "
+                      "or EnSight Gold, or a linear mesh",
                       file.string(), *id, known.name, *nodes));
     for (std::int64_t k = 0; k < *nodes; ++k)
       if (!take_number(text)) return;
@@ -86,8 +86,8 @@ std::string note_on_ensight6(const std::filesystem::path& case_file) {
   for (const char* type : {"tetra10", "pyramid13", "penta15", "hexa20"})
     if (mapped.text().find(type) != std::string_view::npos)
       return fmt::format(
-          "cells of second order ({}) are drawn by their corners, since VTK's reader of EnSight 6 reads only these; "
-          "write EnSight Gold",
+          "cells of second order ({}) are drawn as linear cells, because VTK's reader of EnSight 6 reads only their "
+          "corners; write EnSight Gold",
           type);
   return {};
 }

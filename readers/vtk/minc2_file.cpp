@@ -52,7 +52,8 @@ class Minc2Volume {
     require(miget_volume_dimension_count(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, &count), "its dimensions");
     if (count < 3 || count > most_axes)
       throw scene::bad_input(
-          fmt::format("{}: it has {} dimensions; give a volume of three, besides time and components", source_, count));
+          fmt::format("{}: it has {} dimensions; give a volume with three dimensions, not counting time and components",
+                      source_, count));
     // Checked here, because the library dereferences a null pointer for a name that the file does not have.
     const std::vector<std::string> names = names_in_file(count);
     std::vector<std::string> wanted;
@@ -64,8 +65,8 @@ class Minc2Volume {
         wanted.size() != names.size() ||
         miset_apparent_dimension_order_by_name(volume_, count, pointers.data()) != MI_NOERROR)
       throw scene::bad_input(
-          fmt::format("{}: its dimensions are {}, other than xspace, yspace, zspace, time and vector_dimension; give a "
-                      "volume in space",
+          fmt::format("{}: its dimensions are {}, but only xspace, yspace, zspace, time and vector_dimension are "
+                      "supported; give a volume in space",
                       source_, fmt::join(names, ", ")));
     std::array<midimhandle_t, most_axes> dimensions{};
     // The function returns the number of dimensions, or 0 like other successful calls.
@@ -123,8 +124,8 @@ class Minc2Volume {
     }
     if (axis.name == "time" || axis.name == "vector_dimension") return axis;
     if (is_irregular != 0)
-      throw scene::bad_input(
-          fmt::format("{}: its samples along {} are uneven; resample it with mincresample", source_, axis.name));
+      throw scene::bad_input(fmt::format("{}: its samples along {} are unevenly spaced; resample it with mincresample",
+                                         source_, axis.name));
     require(miget_dimension_start(dimension, MI_ORDER_FILE, &axis.start), "a dimension's start");
     require(miget_dimension_separation(dimension, MI_ORDER_FILE, &axis.step), "a dimension's step");
     require(miget_dimension_cosines(dimension, axis.cosines.data()), "a dimension's direction");
@@ -183,7 +184,7 @@ io::ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& 
   if (has_components) {
     constexpr misize_t most_components = 64;
     if (axes.back().size > most_components)
-      throw scene::bad_input(fmt::format("{}: its samples have {} components; write at most {} of them", source,
+      throw scene::bad_input(fmt::format("{}: its samples have {} components; write at most {}", source,
                                          axes.back().size, most_components));
     first.push_back(0), counts.push_back(axes.back().size);
     components = static_cast<int>(axes.back().size);

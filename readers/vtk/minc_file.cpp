@@ -32,12 +32,13 @@ namespace {
 void require_whole(const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR)
-    throw scene::bad_input(fmt::format("{}: it begins as NetCDF and cannot be opened; {}", file.string(), write_again));
+    throw scene::bad_input(
+        fmt::format("{}: it begins like a NetCDF file, but cannot be opened; {}", file.string(), write_again));
   const std::uint64_t least = least_netcdf_bytes(id), size = io::require_file(file);
   nc_close(id);
   if (size < least)
     throw scene::bad_input(
-        fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_again));
+        fmt::format("{}: it has {} bytes, but needs at least {}; {}", file.string(), size, least, write_again));
 }
 
 /// Returns the times of a file's steps: from the variable `time` if it exists, otherwise from its start and step.

@@ -122,7 +122,7 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
       for (const char* name : {"points", "faces", "owner", "neighbour"})
         if (!std::filesystem::exists(mesh / name, unknown) &&
             !std::filesystem::exists(mesh / (std::string(name) + ".gz"), unknown))
-          throw scene::bad_input(fmt::format("{}: its mesh needs {}, and there is no such file; put it there", source,
+          throw scene::bad_input(fmt::format("{}: its mesh needs {}, but there is no such file; put it there", source,
                                              (mesh / name).lexically_normal().string()));
       refuse_compact_text(mesh / "faces", source);
     }
@@ -195,9 +195,9 @@ void read_processors(Holdings& holdings, ProcessorReader& reader, const std::fil
                      const std::string& source, const nlohmann::json& request, io::ForeignContents& contents) {
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
   if (const int folders = processor_folders(folder); processors != folders)
-    throw scene::bad_input(
-        fmt::format("{}: of its {} processors' directories {} can be read; run reconstructPar, or decomposePar again",
-                    source, folders, processors));
+    throw scene::bad_input(fmt::format(
+        "{}: of its {} processor directories, only {} can be read; run reconstructPar, or decomposePar again", source,
+        folders, processors));
   const auto count = static_cast<std::uint64_t>(processors);
   const std::uint64_t last = cells::first_of_part(count, part + 1, parts);
   for (std::uint64_t k = cells::first_of_part(count, part, parts); k < last; ++k) {

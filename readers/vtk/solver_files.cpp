@@ -184,13 +184,14 @@ FluentSections fluent_sections(const std::filesystem::path& file) {
 void require_solid_cells(const std::filesystem::path& file) {
   const FluentSections sections = fluent_sections(file);
   if (sections.dimensions == 2)
-    throw scene::bad_input(
-        fmt::format("{}: it is a plane mesh of Fluent's, of 2 dimensions, and has no volume to render; give one of 3",
-                    file.string()));
-  if (!sections.untyped.empty())
     throw scene::bad_input(fmt::format(
-        "{}: the section of cells of zone {} does not state what they are; export CGNS or EnSight, or the case again",
-        file.string(), sections.untyped));
+        "{}: it is a two-dimensional Fluent mesh, which has no volume to render; give a three-dimensional mesh",
+        file.string()));
+  if (!sections.untyped.empty())
+    throw scene::bad_input(
+        fmt::format("{}: the section of cells of zone {} does not state the types of its cells; export CGNS or "
+                    "EnSight, or the case again",
+                    file.string(), sections.untyped));
 }
 
 /// Corrects the order of corners. GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids:
@@ -257,16 +258,16 @@ void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& descr
   for (const EnsightCase::Missing& gone : described.missing(time)) {
     if (gone.variable.empty())
       throw scene::bad_input(
-          fmt::format("{}: it names {}, and there is no such file; put it there", source, gone.file));
+          fmt::format("{}: it names {}, but there is no such file; put it there", source, gone.file));
     if (asks_for(request.value("field", ""), gone.variable))
       throw scene::bad_input(
-          fmt::format("{}: {} of that time step is in {}, and there is no such file; put it there, "
-                      "or choose another `field` or `time_step`",
+          fmt::format("{}: {} of that time step is in {}, but there is no such file; put it there, or choose another "
+                      "`field` or `time_step`",
                       source, gone.variable, gone.file));
     gone.of_points ? reader.SetPointArrayStatus(gone.variable.c_str(), 0)
                    : reader.SetCellArrayStatus(gone.variable.c_str(), 0);
     notes.push_back(
-        fmt::format("{} is left out: {} is missing, which the case names for it", gone.variable, gone.file));
+        fmt::format("{} is left out: its file {}, which the case names, is missing", gone.variable, gone.file));
   }
 }
 
@@ -390,7 +391,7 @@ io::ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path
   io::ForeignContents contents;
   for (const std::filesystem::path& each : cases) {
     if (!std::filesystem::is_regular_file(each))
-      throw scene::bad_input(fmt::format("{}: it lists {}, and there is no such file; put it there", file.string(),
+      throw scene::bad_input(fmt::format("{}: it lists {}, but there is no such file; put it there", file.string(),
                                          each.filename().string()));
     io::ForeignContents some = read_case(holdings, each, request);
     if (std::string note = note_on_ensight6(each); !note.empty()) some.notes.push_back(std::move(note));
@@ -449,7 +450,7 @@ io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path&
   if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_again);
   std::erase_if(contents.notes,
                 [](const std::string& note) { return note.find("open dat file") != std::string::npos; });
-  if (!has_data) contents.notes.emplace_back("no .dat file is next to the case: it has no field");
+  if (!has_data) contents.notes.emplace_back("there is no .dat file next to the case, so it has no field");
   return contents;
 }
 

@@ -211,7 +211,7 @@ io::ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string&
     std::copy_n(image->GetDirectionMatrix()->GetData(), 9, part.direction.begin());
   } else {
     throw scene::bad_input(
-        fmt::format("{}: it holds {}, no cells of volume; give a mesh", source, data.GetClassName()));
+        fmt::format("{}: it contains {}, but no volume cells; give a mesh", source, data.GetClassName()));
   }
   part.point_fields = hold_fields(holdings, *data.GetPointData(), "point");
   part.cell_fields = hold_fields(holdings, *data.GetCellData(), "cell");
@@ -278,7 +278,7 @@ std::vector<io::ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, c
   }
   auto* composite = vtkCompositeDataSet::SafeDownCast(&data);
   if (composite == nullptr)
-    throw scene::bad_input(fmt::format("{}: it holds {}, no mesh; give a mesh", source, data.GetClassName()));
+    throw scene::bad_input(fmt::format("{}: it contains {}, but no mesh; give a mesh", source, data.GetClassName()));
   const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
   Names names;
   add_names(&data, "", names);

@@ -62,7 +62,7 @@ class WithPieces final : public Reader {
     for (std::size_t n = 0; n < pieces.size(); ++n) {
       std::copy_n(this->PieceExtents + 6 * n, 6, pieces[n].begin());
       if (cells_in(pieces[n]) > 0 && !holds(whole, pieces[n]))
-        throw scene::bad_input(fmt::format("{}: piece {} has the points {}, the whole has {}; {}", source, n,
+        throw scene::bad_input(fmt::format("{}: piece {} has the points {}, but the whole has {}; {}", source, n,
                                            words_of(pieces[n]), words_of(whole), write_again));
     }
     const double cells = cells_in(whole), covered = cells_covered(pieces);

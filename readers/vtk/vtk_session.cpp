@@ -97,7 +97,7 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   } catch (const std::bad_alloc&) {
     throw memory_error(source);
   } catch (const std::length_error&) {
-    throw scene::bad_input(fmt::format("{}: it gives impossible sizes; {}", source, remedy));
+    throw scene::bad_input(fmt::format("{}: it states impossible sizes; {}", source, remedy));
   }
   if (!quiet.trap->failed && quiet.trap->warning.find("Error reading") != std::string::npos)
     throw error_of_vtk(source, "it ends before its data do", remedy);

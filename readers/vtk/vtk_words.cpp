@@ -100,9 +100,9 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
   if (has(words, "ends before its data")) return scene::bad_input(fmt::format("{}: {}; {}", source, words, remedy));
   // The file is a legacy file that contains only fields.
   if (words == no_output)
-    return scene::bad_input(fmt::format("{}: it holds no points and cells; give the file that does", source));
+    return scene::bad_input(fmt::format("{}: it has no points and cells; give the file that has them", source));
   if (const std::string file = missing_file_in(words, source); !file.empty())
-    return scene::bad_input(fmt::format("{}: it needs {}, and there is no such file; put it there", source, file));
+    return scene::bad_input(fmt::format("{}: it needs {}, but there is no such file; put it there", source, file));
   // The messages of some readers already begin with the name of the file.
   const std::string own = words.starts_with(source + ": ") ? words.substr(source.size() + 2) : words;
   for (const char* const odd : {"non-digit character n", "non-digit character i", "found nan", "found inf"})
@@ -115,11 +115,12 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
   if (const std::size_t at = own.find(attribute);
       at != std::string::npos && at + attribute.size() < own.size() && is_digit(own[at + attribute.size()]))
     return scene::bad_input(fmt::format(
-        "{}: a number, {}, is where the next array is expected, so one has more numbers than it states; {}", source,
-        own.substr(at + attribute.size(), own.find(' ', at + attribute.size()) - at - attribute.size()), remedy));
+        "{}: it has a number, {}, where the next array is expected, so an array has more numbers than it states; {}",
+        source, own.substr(at + attribute.size(), own.find(' ', at + attribute.size()) - at - attribute.size()),
+        remedy));
   if (proves_damage(own)) return scene::bad_input(fmt::format("{}: {}; {}", source, own, remedy));
-  return scene::bad_input(
-      fmt::format("{}: VTK's reader reports: {}; see to that, or have it written in another format", source, own));
+  return scene::bad_input(fmt::format(
+      "{}: VTK's reader reports: {}; correct that, or have the file written in another format", source, own));
 }
 
 }  // namespace tessera::readers

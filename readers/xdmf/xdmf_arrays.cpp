@@ -56,11 +56,12 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
     std::error_code unknown;
     const std::filesystem::path file = std::filesystem::canonical(named, unknown);
     if (unknown || !std::filesystem::is_regular_file(file, unknown))
-      throw scene::bad_input(fmt::format("{}: its data are in {}, which is not there; put it there", source_,
+      throw scene::bad_input(fmt::format("{}: its data are in {}, which does not exist; put the file there", source_,
                                          scene::quote(named.filename().string())));
     if (std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
       throw scene::bad_input(
-          fmt::format("{}: its data are in {}, which is neither next to it nor below; move it there, and name it so",
+          fmt::format("{}: its data are in {}, which is neither in its directory nor below; move that file there and "
+                      "correct the reference",
                       source_, scene::quote(named.string())));
     const auto* const binary = dynamic_cast<const XdmfBinaryController*>(array.getHeavyDataController(k).get());
     if (binary != nullptr) require_size(*binary, file);
@@ -74,8 +75,9 @@ void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std
                       least = numbers.getSeek() +
                               std::uint64_t{numbers.getDataspaceSize()} * numbers.getType()->getElementSize();
   if (size < least)
-    throw scene::bad_input(fmt::format("{}: its data in {} end at byte {}, the file has {}; write both again", source_,
-                                       scene::quote(file.filename().string()), least, size));
+    throw scene::bad_input(
+        fmt::format("{}: its data in {} end at byte {}, but that file has {} bytes; write both again", source_,
+                    scene::quote(file.filename().string()), least, size));
 }
 
 void XdmfHeavyFiles::allow() const { allow_for_files(files_); }

@@ -49,7 +49,7 @@ const XdmfCell& cell_of(unsigned xdmf, const std::string& name, const std::strin
       std::find_if(xdmf_cells.begin(), xdmf_cells.end(), [&](const XdmfCell& c) { return c.xdmf == xdmf; });
   if (type == xdmf_cells.end())
     throw scene::bad_input(
-        fmt::format("{}: it has cells of the type {}, which are not read; write tetrahedra, hexahedra, wedges or "
+        fmt::format("{}: it has cells of the type {}, which are not supported; write tetrahedra, hexahedra, wedges or "
                     "pyramids of first or second order",
                     where, name));
   return *type;

@@ -57,10 +57,10 @@ class InlineNumbers {
                       source_, scene::quote(dimensions_), words_));
     constexpr std::uint64_t most = 10'000'000;  // limit of libxml2 with the options of Xdmf's library
     if (bytes_ > most)
-      throw scene::bad_input(fmt::format(
-          "{}: a <DataItem> has {} bytes of numbers in the text, and Xdmf's library takes {} at most; write "
-          "its numbers to HDF5 or a binary file",
-          source_, bytes_, most));
+      throw scene::bad_input(
+          fmt::format("{}: a <DataItem> has {} bytes of numbers in the text, but Xdmf's library reads {} at most; "
+                      "write its numbers to HDF5 or a binary file",
+                      source_, bytes_, most));
     dimensions_.clear();
   }
 
@@ -83,18 +83,18 @@ void check_item(const io::XmlElement& element, const std::string& source) {
   if (element.name != "DataItem") return;
   if (upper_case(word(element, {"ItemType"})).starts_with("COORDINATE"))
     throw scene::bad_input(
-        fmt::format("{}: a <DataItem> of the type {} picks single numbers, which is not read; have the program that "
-                    "made it write these, or choose them as a HyperSlab",
+        fmt::format("{}: a <DataItem> of the type {} selects single numbers, which is not supported; write these "
+                    "numbers themselves, or select them as a HyperSlab",
                     source, scene::quote(word(element, {"ItemType"}))));
   if (upper_case(word(element, {"Format"})) != "BINARY") return;
   const std::string type = upper_case(word(element, {"NumberType", "DataType"})), bytes = word(element, {"Precision"});
   const bool is_known = bytes.empty() || bytes == "4" || bytes == "8" ||
                         ((bytes == "1" || bytes == "2") && type != "FLOAT" && !type.empty());
   if (!is_known)
-    throw scene::bad_input(fmt::format(
-        "{}: a <DataItem> has binary numbers of the Precision {}; write floats of 4 or 8 bytes or integers of 1, 2, 4 "
-        "or 8",
-        source, scene::quote(bytes)));
+    throw scene::bad_input(
+        fmt::format("{}: a <DataItem> has binary numbers of the unsupported Precision {}; write floats of 4 or 8 bytes "
+                    "or integers of 1, 2, 4 or 8",
+                    source, scene::quote(bytes)));
 }
 
 /// Whether the element is valid according to the format's documentation, but the library cannot read it.
@@ -142,14 +142,15 @@ XdmfText check_xdmf_elements(const std::filesystem::path& file) {
   const io::WholeFile mapped(file);
   const std::string source = file.string();
   if (mapped.text().find("<!ENTITY") != std::string_view::npos)
-    throw scene::bad_input(fmt::format("{}: it defines entities of its own; write it without", source));
+    throw scene::bad_input(
+        fmt::format("{}: it defines its own XML entities, which is not supported; write it without them", source));
   InlineNumbers numbers(source);
   XdmfText text = XdmfText::plain;
   const auto visit = [&](const io::XmlElement& element) {
     const std::string* const included = element.name.ends_with("include") ? element.find("href") : nullptr;
     if (included != nullptr && !included->empty() && *included != file.filename())
       throw scene::bad_input(
-          fmt::format("{}: it includes another file; have it written as one, with its numbers next to it", source));
+          fmt::format("{}: it includes another file, which is not supported; write both as one file", source));
     check_item(element, source);
     if (included != nullptr || is_to_be_rewritten(element)) text = XdmfText::to_be_rewritten;
     numbers.begin(element);

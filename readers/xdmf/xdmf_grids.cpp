@@ -149,8 +149,8 @@ std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, st
   const std::vector<Grid> grids = children_of(*domain);
   const Timeline timeline(grids);
   if (timeline.count() == 0 && time_step.value_or(0) > 0)
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *time_step));
+    throw scene::bad_input(fmt::format(
+        "{}: there is no time step {}, because the file has no time steps; leave `time_step` out", source, *time_step));
   read = scene::chosen_step(time_step, timeline.count(), source);
   Walk walk(timeline, read.step);
   for (const Grid& grid : grids) walk.visit(grid, grids.size() > 1 ? grid->getName() : "");

@@ -63,7 +63,7 @@ void set_extent(XdmfArray& dimensions, io::ForeignPart& part, const std::string&
 
 io::ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const std::string& where, bool is_kept) {
   if (geometry.getType() != XdmfGeometryType::XYZ())
-    throw scene::bad_input(fmt::format("{}: its points are given as {}, not as x y z; write them so", where,
+    throw scene::bad_input(fmt::format("{}: its points are given as {}, not as x y z; write them as x y z", where,
                                        geometry.getType()->getName()));
   return hold_xdmf(holdings, geometry, "", 3, is_kept);
 }
@@ -99,7 +99,7 @@ class PartOf {
     } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(grid)) {
       if (!headers_only_) set(*unstructured);
     } else {
-      throw scene::bad_input(fmt::format("{}: it is a grid of a kind that is not known; write it again", where_));
+      throw scene::bad_input(fmt::format("{}: it is a grid of an unknown kind; write it again", where_));
     }
     for (const auto& each : block.grids)
       if (!headers_only_) add_attributes(*each);
@@ -116,7 +116,8 @@ class PartOf {
     set_extent(*grid.getDimensions(), part, where_);
     const std::vector<double> origin = doubles_of(*grid.getOrigin()), steps = doubles_of(*grid.getBrickSize());
     if (origin.size() != 3 || steps.size() != 3)
-      throw scene::bad_input(fmt::format("{}: its origin or spacing is not of three numbers; write it again", where_));
+      throw scene::bad_input(
+          fmt::format("{}: its origin or spacing does not have three numbers; write it again", where_));
     for (std::size_t axis = 0; axis < 3; ++axis)
       part.origin[axis] = origin[2 - axis], part.spacing[axis] = steps[2 - axis];
     part.direction = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -103,11 +103,13 @@ std::vector<XdmfArray*> referenced_arrays(XdmfArray& array, const std::string& s
                            });
     if (!are_three)
       throw scene::bad_input(fmt::format(
-          "{}: its points are given as X_Y_Z, and not by three arrays of one length; write it again", source));
+          "{}: its points are given as X_Y_Z, but not by three arrays of equal length; write it again", source));
     return axes;
   }
-  throw scene::bad_input(fmt::format(
-      "{}: it has numbers that are a function of others; have the program that made it write them", source));
+  throw scene::bad_input(
+      fmt::format("{}: it has numbers that are defined as a function of others, which is not supported; write the "
+                  "numbers themselves",
+                  source));
 }
 
 NumberType number_type_of(const XdmfArray& array) {

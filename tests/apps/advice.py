@@ -217,7 +217,7 @@ I empty.vtu => write it again => I t.vtu
 I t.vtu.txt => lists them => tessera formats
 I /dev/null => give one that can be read twice => I v.vti
 : | tessera render - -o a.png => it is empty; send a file to it => tessera render - -o a.png --size 9x9 < a.ply
-I m.case => it names m.geo, and there is no such file; put it there => cp ensight/m.geo .; I m.case
+I m.case => it names m.geo, but there is no such file; put it there => cp ensight/m.geo .; I m.case
 rm case/constant/polyMesh/faces; I case => and there is no such file; put it there => I cavity
 I alone.foam => move it into the directory of a case, or name that directory => mv alone.foam cavity; I cavity/alone.foam
 mkdir one; cp scan/slice000.dcm one; I one => give a directory of slices => I scan
@@ -500,7 +500,7 @@ BEGIN BULK => INCLUDE 'b.bdf' => it includes 'b.bdf', and there is no such file;
     ("I", "a.p3d", '{"filenames": [{"xyz": "a.xyz"}]}', r"""
 [{"xyz": "a.xyz"}] => {"xyz": "a.xyz"} => check that it is ParaView's"""),
     ("I", "a.xdmf", XDMF, r"""
-<Xdmf => <!DOCTYPE Xdmf [<!ENTITY a "b">]>\n<Xdmf => it defines entities of its own; write it without
+<Xdmf => <!DOCTYPE Xdmf [<!ENTITY a "b">]>\n<Xdmf => it defines its own XML entities, which is not supported; write it without them
 <Grid => <xi:include href="b.xdmf" xmlns:xi="http://www.w3.org/2001/XInclude"/><Grid => have it written as one
 Name="f" => Name="f" Reference="XML" => write the element itself there, or save the file as .vtu
 Format="XML" NumberType="Float" Precision="8" => Format="Binary" NumberType="Float" Precision="2"

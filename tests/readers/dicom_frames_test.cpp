@@ -84,7 +84,7 @@ TEST_F(DicomFrameFiles, ArePlacedByTheirPositionsInAnyOrder) {
 TEST_F(DicomFrameFiles, HaveScalesOfTheirOwn) {
   const VolumeFile volume = open(frames_at({0, 1, 2}, {1, 0.5, 0.25}));
   EXPECT_EQ(all_samples(*volume.source), wanted(3));
-  EXPECT_TRUE(has_note(volume, "scales of their own"));
+  EXPECT_TRUE(has_note(volume, "each slice has its own scale"));
   DicomFrames shared = frames_at({0, 1});
   shared.shared += test::dicom_scale(2, -1000);
   EXPECT_EQ(open(shared).range, (scene::ValueRange{-1000, 2 * 111 - 1000, 0}));
@@ -149,10 +149,10 @@ TEST_F(DicomFrameFiles, WithoutPositionsUseTheFilesSpacingWithANote) {
   EXPECT_TRUE(has_note(nothing, "state neither their positions nor their distance"));
   file.above = dicom_element(0x18, 0x50, "DS", "4");
   EXPECT_EQ(open(file).source->geometry().spacing.z, 4);
-  EXPECT_TRUE(has_note(open(file), "4 mm apart as its slice thickness"));
+  EXPECT_TRUE(has_note(open(file), "4 mm apart, the stated slice thickness"));
   file.above += dicom_element(0x18, 0x88, "DS", "2.5");
   EXPECT_EQ(open(file).source->geometry().spacing.z, 2.5);
-  EXPECT_TRUE(has_note(open(file), "2.5 mm apart as its spacing between slices"));
+  EXPECT_TRUE(has_note(open(file), "2.5 mm apart, the stated spacing between slices"));
 }
 
 TEST_F(DicomFrameFiles, OfADoseArePlacedAtTheirOffsetsAndScaled) {
@@ -185,14 +185,15 @@ TEST_F(DicomFrameFiles, ShowOneOfSeveralDirectionsAndRefuseASinglePosition) {
   file.each.back() = test::dicom_position({0, 0, 0}) + test::dicom_orientation("0\\1\\0\\0\\0\\1");
   const VolumeFile most = open(file);
   EXPECT_EQ(all_samples(*most.source), wanted(3));
-  EXPECT_TRUE(has_note(most, "frames have 2 directions or spacings, and only the 3 of one are read"));
+  EXPECT_TRUE(has_note(most, "frames have 2 different directions or spacings, and only the 3 frames of one are read"));
   // One with another spacing, and all with a spacing that differs from the file's.
   file.each.back() = test::dicom_position({10, -20, 12.5}) + test::dicom_measures(1.5, 1, 9);
   EXPECT_EQ(all_samples(*open(file).source), wanted(3));
   for (std::string& each : file.each) each += test::dicom_measures(1.5, 1, 9);
   file.each.back() = test::dicom_position({10, -20, 12.5});
   EXPECT_EQ(open(file).source->geometry().spacing, glm::dvec3(1, 1.5, 2.5));
-  expect_no_volume(folder.write("b.dcm", test::dicom_file(frames_at({1, 1, 1}))), "all its 3 frames are at one place");
+  expect_no_volume(folder.write("b.dcm", test::dicom_file(frames_at({1, 1, 1}))),
+                   "all its 3 frames are at one position");
 }
 
 }  // namespace

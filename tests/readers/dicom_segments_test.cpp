@@ -150,7 +150,7 @@ TEST_F(DicomSegments, ThatEndEarlyAreRefused) {
   file.packed.resize(4);
   expect_no_volume(folder.write("b.dcm", test::dicom_file(file)), "ends before its samples do");
   file.bits = 4;
-  expect_no_volume(folder.write("c.dcm", test::dicom_file(file)), "of 4 bits, which are not read");
+  expect_no_volume(folder.write("c.dcm", test::dicom_file(file)), "its samples have 4 bits, which is not supported");
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST_F(Dicom, IsRefusedByNameIfItIsDeflated) {
   const auto file = write("0.dcm", {.samples = twelve(0), .is_deflated = true});
   for (const auto& name : {folder.path(), file})
     expect_no_volume(name,
-                     "0.dcm: its data set is deflated, which is not read; dcmtk's `dcmconv +te` writes it plainly");
+                     "0.dcm: its data set is deflated, which is not supported; convert it with dcmtk: dcmconv +te");
 }
 
 TEST_F(Dicom, WithoutPositionsAreSpacedByTheirThickness) {
@@ -164,14 +164,15 @@ TEST_F(Dicom, OtherSpacingsAreSeparateStacks) {
   const VolumeFile volume = open_volume(folder.path());
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_EQ(volume.source->geometry().spacing.x, 0.5);
-  EXPECT_TRUE(has_note(volume, "slices of 2 series, sizes, spacings or directions; the 3 of one are shown"));
+  EXPECT_TRUE(has_note(
+      volume, "slices of 2 different series, sizes, spacings or directions; only the 3 slices of one are shown"));
 }
 
 TEST_F(Dicom, RefusesMosaics) {
   for (int k = 0; k < 2; ++k)
     write(fmt::format("{}.dcm", k),
           {.z = 1.0 * k, .number = k, .image_type = "ORIGINAL\\PRIMARY\\M\\MOSAIC", .samples = twelve(k)});
-  expect_no_volume(folder.path(), "mosaic), which is not read; convert it: dcm2niix");
+  expect_no_volume(folder.path(), "mosaic), which is not supported; convert it: dcm2niix");
 }
 
 TEST_F(Dicom, ReportsAndKeepsGapsAndShearsTiltedStacks) {
@@ -179,7 +180,7 @@ TEST_F(Dicom, ReportsAndKeepsGapsAndShearsTiltedStacks) {
   for (int k = 0; k < 4; ++k) write(fmt::format("{}.dcm", k), {.z = z[k], .number = k, .samples = twelve(k)});
   const VolumeFile gap = open_volume(folder.path());
   EXPECT_TRUE(gap.source->geometry().rectilinear());
-  EXPECT_TRUE(has_note(gap, "2 to 4 mm apart, the widest gap after 1.dcm; there 1 slice may be missing"));
+  EXPECT_TRUE(has_note(gap, "2 to 4 mm apart, with the widest gap after 1.dcm; there 1 slice may be missing"));
   const scene::Box box = scene::bounds(gap.source->geometry());
   EXPECT_EQ(box.low, glm::dvec3(10, -20, 0));
   EXPECT_EQ(box.high, glm::dvec3(11.5, -18.5, 8));
@@ -200,7 +201,7 @@ TEST_F(Dicom, EachSliceIsScaledByItsOwnHeader) {
   EXPECT_EQ(samples[0], 0.5);
   EXPECT_EQ(samples[12], 1.5);
   EXPECT_EQ(volume.source->grid().type, scene::SampleType::float32);
-  EXPECT_TRUE(has_note(volume, "scales of their own"));
+  EXPECT_TRUE(has_note(volume, "each slice has its own scale"));
 }
 
 TEST_F(Dicom, SlicesAtOnePositionAreTimeSteps) {
@@ -224,7 +225,8 @@ TEST_F(Dicom, ShowsTheLargestOrTheNamedSeries) {
   for (int k = 0; k < 9; ++k) write(fmt::format("rgb{}.dcm", k), {.z = 1.0 * k, .colours = 3, .samples = {}});
   const VolumeFile largest = open_volume(folder.path());
   EXPECT_EQ(largest.source->geometry().points, (GridIndex{4, 3, 3}));
-  EXPECT_TRUE(has_note(largest, "slices of 4 series, sizes, spacings or directions; the 3 of one are shown"));
+  EXPECT_TRUE(has_note(
+      largest, "slices of 4 different series, sizes, spacings or directions; only the 3 slices of one are shown"));
   EXPECT_EQ(all_samples(*open_volume(folder / "4.dcm").source)[0], 3);
   expect_no_volume(folder / "rgb1.dcm", "coloured");
   expect_no_volume(folder / "scout.dcm", "single slice");
@@ -235,7 +237,7 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
   folder.write("plan.dcm", std::string(128, '\0') + "DICM" + element(2, 0x10, "UI", "1.2.840.10008.1.2.1"));
   const VolumeFile others = open_volume(folder.path());
   EXPECT_EQ(others.source->geometry().points, (GridIndex{4, 3, 3}));
-  EXPECT_TRUE(has_note(others, "1 DICOM file without an image that GDCM can read left out, first plan.dcm"));
+  EXPECT_TRUE(has_note(others, "left out 1 DICOM file without an image that GDCM can read; the first is plan.dcm"));
   expect_no_volume(folder / "plan.dcm", "plan.dcm");
   const std::string whole = dicom({.z = 1, .samples = twelve(1)});
   folder.write("1.dcm", whole.substr(0, whole.size() - 10));
@@ -268,7 +270,7 @@ TEST_F(Dicom, PaddingIsBlank) {
       EXPECT_EQ(samples[k], 2 * (k < 12 ? static_cast<double>(k) - 3 : static_cast<double>(k) - 12) + 10);
     }
   }
-  EXPECT_TRUE(has_note(volume, "4 samples are padding"));
+  EXPECT_TRUE(has_note(volume, "4 samples have the padding value"));
   EXPECT_EQ(volume.source->grid().type, scene::SampleType::float32);
   EXPECT_EQ(volume.range.low, 4);
 }

@@ -434,7 +434,8 @@ TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float
   options.time_step = 1;
   const std::vector<std::string> notes = left_out(read_mesh(folder.path() / "a.case", options));
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("g is left out: a.g05 is missing"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("g is left out: its file a.g05, which the case names, is missing"), std::string::npos)
+      << notes[0];
 }
 
 }  // namespace

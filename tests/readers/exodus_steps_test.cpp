@@ -203,7 +203,7 @@ TEST(ExodusSteps, WithoutFileSizeNodesHaveTheirValues) {
     }
     EXPECT_EQ(read.fields.front().name, "T");
     EXPECT_TRUE(std::ranges::any_of(read.notes, [](const std::string& note) {
-      return note.find("'v' is left out: it has 3 numbers a node") != std::string::npos;
+      return note.find("'v' is left out: it has 3 numbers per node") != std::string::npos;
     })) << read.notes.size();
   }
 }

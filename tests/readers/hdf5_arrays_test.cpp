@@ -146,7 +146,7 @@ TEST(Hdf5Arrays, OfMoreAxesHaveStepsAndComponents) {
     EXPECT_EQ(test::all_samples(*open_volume(folder / "steps.h5", options).source),
               ramp(20, 20 * static_cast<double>(step)));
   }
-  EXPECT_TRUE(has_note(open_volume(folder / "steps.h5", options), "time steps are counted along the first of the dim"));
+  EXPECT_TRUE(has_note(open_volume(folder / "steps.h5", options), "time steps are counted along the first dim"));
   options.time_step = 3;
   test::expect_no_volume(folder / "steps.h5", "there is no time step 3, the file has 3", options);
   {
@@ -158,7 +158,7 @@ TEST(Hdf5Arrays, OfMoreAxesHaveStepsAndComponents) {
   const VolumeFile second = open_volume(folder / "vectors.h5", options);
   EXPECT_EQ(second.source->geometry().points, (GridIndex{6, 2, 5}));
   EXPECT_EQ(second.range, (scene::ValueRange{1, 119, 0}));
-  EXPECT_TRUE(has_note(second, "the last dimension of v, of 2, is taken for components"));
+  EXPECT_TRUE(has_note(second, "the last dimension of v, of size 2, is used for components"));
 }
 
 TEST(Hdf5Arrays, MayHaveALastDimensionOfOne) {
@@ -261,7 +261,7 @@ TEST(Hdf5Arrays, WithoutThreeDimensionsAreRefused) {
     w.array("image", H5T_IEEE_F32LE, {4, 4}, ramp(16));
   }
   EXPECT_EQ(test::fault_of([&] { read_mesh(folder / "flat.h5"); }).code, scene::ErrorCode::bad_input);
-  test::expect_no_volume(folder / "flat.h5", "without an array of numbers of three dimensions");
+  test::expect_no_volume(folder / "flat.h5", "without a three-dimensional array of numbers");
 }
 
 /// An image of 4 x 3 x 2 points whose indices begin at (10, 0, -1).

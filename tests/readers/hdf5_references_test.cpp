@@ -82,30 +82,31 @@ TEST_F(Hdf5References, ToNeighbouringFilesAreFollowed) {
 TEST_F(Hdf5References, ToOtherDirectoriesAreRefused) {
   const std::string outside = (folder / "outside.vtkhdf").string();
   for (const std::string& to : {outside, std::string("../outside.vtkhdf")}) {
-    expect_refused(linked("a.vtkhdf", to), "leads to 'outside.vtkhdf', which is neither next to it nor below");
-    expect_refused(with_virtual_field("v.vtkhdf", to.c_str(), "/VTKHDF/PointData/f"), "neither next to it nor below");
+    expect_refused(linked("a.vtkhdf", to), "refers to 'outside.vtkhdf', which is neither in its directory nor below");
+    expect_refused(with_virtual_field("v.vtkhdf", to.c_str(), "/VTKHDF/PointData/f"),
+                   "neither in its directory nor below");
   }
-  expect_refused(with_external_field("e.vtkhdf", outside.c_str()), "neither next to it nor below");
+  expect_refused(with_external_field("e.vtkhdf", outside.c_str()), "neither in its directory nor below");
   std::filesystem::create_symlink(outside, in / "link.vtkhdf");
-  expect_refused(linked("s.vtkhdf", "link.vtkhdf"), "neither next to it nor below");
+  expect_refused(linked("s.vtkhdf", "link.vtkhdf"), "neither in its directory nor below");
   static_cast<void>(linked("b.vtkhdf", outside));
-  expect_refused(linked("c.vtkhdf", "b.vtkhdf"), "in 'b.vtkhdf': it leads to 'outside.vtkhdf'");
+  expect_refused(linked("c.vtkhdf", "b.vtkhdf"), "in 'b.vtkhdf': it refers to 'outside.vtkhdf'");
 }
 
 TEST_F(Hdf5References, ToPipesAreRefused) {
   ASSERT_EQ(::mkfifo((in / "pipe").c_str(), 0600), 0);
   const std::string pipe = (in / "pipe").string();
-  expect_refused(linked("a.vtkhdf", "pipe"), "leads to 'pipe', which is not a regular file");
+  expect_refused(linked("a.vtkhdf", "pipe"), "refers to 'pipe', which is not a regular file");
   expect_refused(with_virtual_field("v.vtkhdf", "pipe", "/f"), "not a regular file");
   expect_refused(with_external_field("e.vtkhdf", pipe.c_str()), "not a regular file");
 }
 
 // The library recurses until its stack overflows.
 TEST_F(Hdf5References, OfVirtualDatasetsToThemselvesAreRefused) {
-  expect_refused(with_virtual_field("v.vtkhdf", "v.vtkhdf", "/VTKHDF/PointData/g"), "lead back to themselves");
-  expect_refused(with_virtual_field("w.vtkhdf", ".", "/VTKHDF/PointData/g"), "lead back to themselves");
+  expect_refused(with_virtual_field("v.vtkhdf", "v.vtkhdf", "/VTKHDF/PointData/g"), "refer back to themselves");
+  expect_refused(with_virtual_field("w.vtkhdf", ".", "/VTKHDF/PointData/g"), "refer back to themselves");
   static_cast<void>(with_virtual_field("x.vtkhdf", "y.vtkhdf", "/VTKHDF/PointData/g"));
-  expect_refused(with_virtual_field("y.vtkhdf", "x.vtkhdf", "/VTKHDF/PointData/g"), "lead back to themselves");
+  expect_refused(with_virtual_field("y.vtkhdf", "x.vtkhdf", "/VTKHDF/PointData/g"), "refer back to themselves");
 }
 
 TEST_F(Hdf5References, ByAPatternOfNamesAreRefused) {

@@ -174,7 +174,7 @@ TEST(HyperTrees, ReportsUnsupportedContentInOneLine) {
   TreeScene flat = scene;
   flat.axes[2] = {2};
   const auto plane = folder.write("plane.htg", htg_text(flat, linear));
-  has(message_of([&] { read_mesh(plane); }), "its trees have 2 dimensions; give a grid of three");
+  has(message_of([&] { read_mesh(plane); }), "its trees have 2 dimensions; give a three-dimensional grid");
   has(fault("BranchFactor=\"2\"", "BranchFactor=\"4\""), "divided by 4");
   has(fault("Dimensions=\"4 3 4\"", "Dimensions=\"4 3 5\""), "4 coordinates along z for 5 points");
   has(fault("0.3 1 1.7 2.4", "0.3 1 1 2.4"), "coordinates that rise");
@@ -183,14 +183,14 @@ TEST(HyperTrees, ReportsUnsupportedContentInOneLine) {
   has(fault("Name=\"ZCoordinates\"", "Name=\"Z\""), "it has no array ZCoordinates");
   has(fault("Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 2",
             "Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 18"),
-      "tree 2 is that of cell 18, the grid has 3 x 2 x 3 cells");
+      "tree 2 belongs to cell 18, but the grid has 3 x 2 x 3 cells");
   has(fault("Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 2",
             "Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 1"),
       "its trees do not fit its grid");
   has(fault("Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 0",
             "Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 1"),
-      "by its counts");
-  has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"99999999999\""), "more than a file of its size holds");
+      "according to its counts");
+  has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"99999999999\""), "more than a file of this size can contain");
   has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"-17\""), "array 'Descriptors' has -17 numbers");
   has(fault("</VTKFile>", ""), "it does not end with </VTKFile>");
   has(fault("<Trees>", "<Tress>"), "mismatched tag");

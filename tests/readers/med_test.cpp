@@ -285,7 +285,8 @@ TEST(Med, RefusesDamagedFilesInOneLine) {
   if (!has_reader(Reader::vtk)) return;  // otherwise no program inspects HDF5
   // With another name the error names the format and a remedy.
   std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
-  test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); }, {"bar.h5: it is HDF5 and holds a MED mesh", ".med"});
+  test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); },
+                         {"bar.h5: it is an HDF5 file that contains a MED mesh", ".med"});
 }
 
 }  // namespace

@@ -70,12 +70,12 @@ TEST_F(EnsightMessages, AVariableWithoutItsFileIsLeftOutOfThatStep) {
   const cells::MeshFile last = read_mesh(folder / "a.case");
   EXPECT_EQ(last.mesh.field_name, "g");
   EXPECT_EQ(last.mesh.scalars.front(), 11);
-  EXPECT_TRUE(has_note(last, "f is left out: a.f0011 is missing"));
+  EXPECT_TRUE(has_note(last, "f is left out: its file a.f0011, which the case names, is missing"));
   ReadOptions options;
   options.time_step = 1;
   EXPECT_EQ(read_mesh(folder / "a.case", options).mesh.field_name, "f");
   options.time_step = 2, options.field = "f";
-  EXPECT_NE(message_of([&] { read_mesh(folder / "a.case", options); }).find("is in a.f0011, and there is no such file"),
+  EXPECT_NE(message_of([&] { read_mesh(folder / "a.case", options); }).find("is in a.f0011, but there is no such file"),
             std::string::npos);
 }
 
@@ -83,7 +83,7 @@ TEST_F(EnsightMessages, AMissingGeometryIsNamed) {
   TESSERA_VTK_OR_SKIP();
   std::filesystem::remove(folder / "a.geo");
   const std::string message = message_of([&] { read_mesh(folder / "a.case"); });
-  EXPECT_NE(message.find("it names a.geo, and there is no such file"), std::string::npos) << message;
+  EXPECT_NE(message.find("it names a.geo, but there is no such file"), std::string::npos) << message;
 }
 
 TEST_F(Messages, AMarkOfAnOpenFoamCaseMayBeEmptyByEitherName) {
@@ -96,7 +96,7 @@ TEST_F(Messages, AMarkOfAnOpenFoamCaseMayBeEmptyByEitherName) {
   }
   std::filesystem::remove(folder / "case/constant/polyMesh/faces");
   const std::string message = message_of([&] { read_mesh(folder / "case/a.foam"); });
-  EXPECT_NE(message.find("polyMesh/faces, and there is no such file"), std::string::npos) << message;
+  EXPECT_NE(message.find("polyMesh/faces, but there is no such file"), std::string::npos) << message;
 }
 
 TEST_F(Messages, AMissingBlockIsNamedWithItsList) {
@@ -209,11 +209,12 @@ TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedWithTheReason) {
   for (const std::string first : {"(0 \"flat\")\n(2 2)\n", "(2 2)\n"}) {
     const auto flat = write("a.msh", first + "(10 (0 1 5 0 2))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");
     const std::string message = message_of([&] { read_mesh(flat); });
-    EXPECT_NE(message.find("a plane mesh of Fluent's"), std::string::npos) << message;
+    EXPECT_NE(message.find("a two-dimensional Fluent mesh"), std::string::npos) << message;
   }
   const auto untyped = write("b.msh", "(0 \"solid\")\n(2 3)\n(10 (0 1 5 0 3))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");
   const std::string message = message_of([&] { read_mesh(untyped); });
-  EXPECT_NE(message.find("the section of cells of zone 2 does not state what they are"), std::string::npos) << message;
+  EXPECT_NE(message.find("the section of cells of zone 2 does not state the types of its cells"), std::string::npos)
+      << message;
 }
 
 TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {
@@ -255,21 +256,21 @@ TEST_F(Messages, NameUnexpectedWordsOfLegacyFilesWithTheirLine) {
   const struct {
     std::string old, other, words;
   } cases[] = {
-      {"ASCII", "ASCI", "line 3: 'ASCI' is where ASCII or BINARY is expected"},
+      {"ASCII", "ASCI", "line 3: it has 'ASCI' where ASCII or BINARY is expected"},
       {"DATASET UNSTRUCTURED_GRID", "DATASET UNSTRUCTRED_GRID",
        "line 4: 'UNSTRUCTRED_GRID' is where a kind of data set"},
-      {"POINTS 5 double", "POINTS 5 duble", "line 5: 'duble' is where a type of numbers is expected"},
-      {"POINTS 5 double", "POINTS five double", "line 5: 'five' is where a number is expected"},
-      {"\n0 1 0\n", "\n0 foo 0\n", "line 8: 'foo' is where a number is expected"},
-      {"4 1 2 3 4", "4 1 foo 3 4", "line 13: 'foo' is where a number is expected"},
-      {"CELL_TYPES", "CEL_TYPES", "line 14: 'CEL_TYPES' is where a number or a keyword of the format is expected"},
-      {"\n10\n10", "\n10\nten", "line 16: 'ten' is where a number or a keyword of the format is expected"},
+      {"POINTS 5 double", "POINTS 5 duble", "line 5: it has 'duble' where a type of numbers is expected"},
+      {"POINTS 5 double", "POINTS five double", "line 5: it has 'five' where a number is expected"},
+      {"\n0 1 0\n", "\n0 foo 0\n", "line 8: it has 'foo' where a number is expected"},
+      {"4 1 2 3 4", "4 1 foo 3 4", "line 13: it has 'foo' where a number is expected"},
+      {"CELL_TYPES", "CEL_TYPES", "line 14: it has 'CEL_TYPES' where a number or a keyword of the format is expected"},
+      {"\n10\n10", "\n10\nten", "line 16: it has 'ten' where a number or a keyword of the format is expected"},
       {"POINT_DATA", "POINTS_DATA", "line 17: 'POINTS_DATA' is where"},
       {"SCALARS", "SCALRS", "line 18: 'SCALRS' is where"},
       {"LOOKUP_TABLE", "LOKUP_TABLE", "line 19: 'LOKUP_TABLE' is where"},
-      {"0 1 2 3 9", "0 1,5 2 3 9", "line 20: '1,5' is where a number is expected"},
-      {"4 5 6 7 9", "4 5 6 x 9", "line 23: 'x' is where a number is expected"},
-      {"0 1 2 3 9", "0 1 2 3 9 10.5", "a number, 10.5, is where the next array is expected"},
+      {"0 1 2 3 9", "0 1,5 2 3 9", "line 20: it has '1,5' where a number is expected"},
+      {"4 5 6 7 9", "4 5 6 x 9", "line 23: it has 'x' where a number is expected"},
+      {"0 1 2 3 9", "0 1 2 3 9 10.5", "it has a number, 10.5, where the next array is expected"},
   };
   for (const auto& [old, other, words] : cases) {
     std::string text = legacy("9");

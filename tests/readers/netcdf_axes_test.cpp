@@ -88,7 +88,7 @@ TEST(NetcdfAxes, FollowTheirAttributesInEveryOrderAndDirection) {
         const double z = axes[2].coordinates[marked[2]];
         EXPECT_EQ(place_of_marker(volume),
                   glm::dvec3(axes[0].coordinates[marked[0]], axes[1].coordinates[marked[1]], down ? -z : z));
-        EXPECT_EQ(has_note(volume, "counts downwards"), down);
+        EXPECT_EQ(has_note(volume, "increases downwards"), down);
       }
   } while (std::next_permutation(order.begin(), order.end()));
 }

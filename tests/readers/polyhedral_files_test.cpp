@@ -323,7 +323,7 @@ TEST(PolyhedralFiles, AnEnSightListNamesMissingFiles) {
   const test::TemporaryFolder folder;
   const auto file =
       folder.write("m.sos", "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 1\ncasefile: none.case\n");
-  EXPECT_NE(testing::message_of([&] { read_mesh(file); }).find("it lists none.case, and there is no such file"),
+  EXPECT_NE(testing::message_of([&] { read_mesh(file); }).find("it lists none.case, but there is no such file"),
             std::string::npos);
   const auto empty = folder.write("e.sos", "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 0\n");
   EXPECT_NE(testing::message_of([&] { read_mesh(empty); }).find("without a `casefile:`"), std::string::npos);

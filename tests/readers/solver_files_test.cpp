@@ -157,8 +157,9 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesOfItsDataFile) {
   const cells::MeshFile alone = read_mesh(file);
   EXPECT_NEAR(testing::volume(alone.mesh), 27, 1e-5);
   EXPECT_EQ(alone.counts.cells_read, 27u);
-  EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file is next to the case: it has no field"),
-            alone.notes.end());
+  EXPECT_NE(
+      std::find(alone.notes.begin(), alone.notes.end(), "there is no .dat file next to the case, so it has no field"),
+      alone.notes.end());
   // Temperature, one value per cell.
   std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cubes.cells.size());
   for (std::size_t c = 0; c < cubes.cells.size(); ++c) data += fmt::format("{}\n", 300 + c);
@@ -265,7 +266,7 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   expect_cube(read_mesh(folder.path()), 4);
   // An image without one of the parts would be wrong.
   std::filesystem::remove_all(folder / "processor1" / "constant");
-  test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processors' directories 1 can be read"});
+  test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processor directories, only 1 can be read"});
 }
 
 TEST(SolverFiles, RegionsOfADecomposedOpenFoamCaseAreBlocksOfAllProcessors) {

@@ -288,14 +288,14 @@ TEST(Enzo, DamagesAreOneLine) {
     return message;
   };
   folder.write("output_0003.hierarchy", good.substr(0, good.rfind("GridRightEdge")));
-  EXPECT_NE(fault().find("the file ends after 5 grids where GridRightEdge is wanted"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("the file ends after 5 grids where GridRightEdge is required"), std::string::npos) << fault();
   folder.write("output_0003.hierarchy", good);
   std::filesystem::resize_file(folder / "output_0003.cpu0000", 3000);
   EXPECT_NE(fault(), "");
   std::filesystem::remove(folder / "output_0003.cpu0000");
   EXPECT_NE(fault(), "");
   std::filesystem::remove(folder / "output_0003");
-  EXPECT_NE(fault().find("output_0003, which belongs to it, is not there"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("output_0003, which belongs to it, does not exist"), std::string::npos) << fault();
 }
 
 TEST(Enzo, ChangedBytesAreReadOrRefused) {

@@ -120,7 +120,7 @@ TEST(VtkHdf, StepsThatTheirArraysDoNotHoldAreRefused) {
     }
     test::expect_bad_input([&] { read_mesh(folder / "d.vtkhdf"); }, {"d.vtkhdf: VTKHDF: ", part, "damaged"});
   };
-  refused("Steps/PartOffsets", {0, 1, 2}, "parts up to 4, there are 3");
+  refused("Steps/PartOffsets", {0, 1, 2}, "parts up to 4, but there are only 3");
   refused("Steps/PointOffsets", {0, 5, 6}, "'VTKHDF/Points' has 13 tuples");
   refused("Steps/PointOffsets", {0, 5}, "'Steps/PointOffsets' has no number for step 2");
   refused("Steps/CellOffsets", {0, 2, -1}, "'Steps/CellOffsets' has -1");

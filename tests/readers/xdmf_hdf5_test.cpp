@@ -79,7 +79,7 @@ TEST(XdmfHdf5, DamagedDataAreRefusedInOneLine) {
     const auto file = folder.write("a.xdmf", text);
     test::expect_bad_input([&] { read_mesh(file); }, words);
   };
-  refused(mesh_text("b.h5"), {"a.xdmf: its data are in 'b.h5', which is not there"});
+  refused(mesh_text("b.h5"), {"a.xdmf: its data are in 'b.h5', which does not exist"});
   std::string text = mesh_text("a.h5");
   text.replace(text.find(":/values"), 8, ":/absent");
   refused(text, {"a.xdmf: ", "; "});

@@ -106,7 +106,7 @@ TEST_F(XdmfItems, SelectionsOutsideOfTheirArraysAreRefused) {
     expect_refused(selection(rows, item), {"a HyperSlab of start", "does not fit an array of the dimensions 3 5 6"});
   const std::string good = file_of(regular, selection("1 1 1 1 1 1 2 3 4", item));
   test::expect_no_crash_of_changes(folder, "changed.xmf", good, [](const auto& file) { open_volume(file); });
-  expect_refused(selection("0 0 0", item, "Coordinates"), {"of the type 'Coordinates' picks single numbers"});
+  expect_refused(selection("0 0 0", item, "Coordinates"), {"of the type 'Coordinates' selects single numbers"});
 }
 
 std::string binary(const char* type, int precision) {
@@ -136,8 +136,8 @@ TEST_F(XdmfItems, BinaryNumbersHaveTheirBytes) {
   check(std::uint64_t{30000000000}, "UInt", 8), check(0.5F, "Float", 4), check(0.1, "Float", 8);
   check(0.5F, "", 4), check(0.1, "", 8);
   check(std::int8_t{10}, "Char", 1), check(std::uint8_t{250}, "UChar", 1);
-  expect_refused(binary("Float", 2), {"binary numbers of the Precision '2'"});
-  expect_refused(binary("Int", 3), {"binary numbers of the Precision '3'"});
+  expect_refused(binary("Float", 2), {"binary numbers of the unsupported Precision '2'"});
+  expect_refused(binary("Int", 3), {"binary numbers of the unsupported Precision '3'"});
 }
 
 TEST_F(XdmfItems, PointsMayBeAnArrayForEachAxisAndCountFromOne) {
@@ -162,7 +162,7 @@ TEST_F(XdmfItems, PointsMayBeAnArrayForEachAxisAndCountFromOne) {
   check(mesh(cell + points));
   test::expect_bad_input(
       [&] { mesh(cell + "<Geometry GeometryType=\"X_Y_Z\">" + axis("0 2 2 0 0 2 2 0") + "</Geometry>"); },
-      {"m.xmf: its points are given as X_Y_Z, and not by three arrays"});
+      {"m.xmf: its points are given as X_Y_Z, but not by three arrays"});
   // A grid whose points are x fastest, with its size in the other attribute.
   const std::string rows = "<Geometry GeometryType=\"X_Y_Z\">" + axis("0 2 0 2 0 2 0 2") + axis("0 0 3 3 0 0 3 3") +
                            axis("0 0 0 0 5 5 5 5") + "</Geometry>";

@@ -222,8 +222,8 @@ TEST_F(Xdmf, ReadsBinaryNumbersFromNeighbouringFiles) {
   // Files elsewhere are not opened, and files that are too short are refused.
   const test::TemporaryFolder other;
   other.write("a.bin", test::bytes_of(points) + test::bytes_of(values));
-  expect_refused(grid((other / "a.bin").string()), {"neither next to it nor below"});
-  expect_refused(grid("absent.bin"), {"'absent.bin', which is not there"});
+  expect_refused(grid((other / "a.bin").string()), {"neither in its directory nor below"});
+  expect_refused(grid("absent.bin"), {"'absent.bin', which does not exist"});
   folder.write("data/a.bin", test::bytes_of(points));
   expect_refused(grid("data/a.bin"), {});
 }
@@ -264,7 +264,7 @@ TEST_F(Xdmf, RefusesDamagedAndUnusualFilesInOneLine) {
       "e.xmf",
       "<!DOCTYPE Xdmf [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>\n<Xdmf><Domain>&b;"
       "</Domain></Xdmf>");
-  test::expect_bad_input([&] { read_mesh(entities); }, {"e.xmf: it defines entities"});
+  test::expect_bad_input([&] { read_mesh(entities); }, {"e.xmf: it defines its own XML entities"});
   expect_refused("<xi:include href=\"/etc/passwd\" parse=\"text\"/>\n" + two_tets("m", 0, 1), {"another file"});
 }
 

@@ -82,7 +82,7 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
   if (!known || !WIFSIGNALED(status)) return {bad_input, fmt::format("{} failed; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
     case SIGXCPU:
-      return {bad_input, fmt::format("{} takes much longer than a file of this size should; {}", task.words,
+      return {bad_input, fmt::format("{} takes much longer than a file of this size should take; {}", task.words,
                                      task.limit_remedy.empty() ? task.remedy : task.limit_remedy)};
     case SIGKILL:
       return {

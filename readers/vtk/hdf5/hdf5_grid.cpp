@@ -88,7 +88,7 @@ const SameSize& choose_arrays(const std::vector<SameSize>& sizes, const std::str
       chosen = &same;
   for (const SameSize& same : sizes)
     if (&same != chosen)
-      notes.push_back(fmt::format("another grid, of {} samples, is {}{}: name one by `field` to have it",
+      notes.push_back(fmt::format("another grid, of {} samples, is {}{}: to show it, name it with `field`",
                                   fmt::join(same.front().points(), " x "), same.front().array->path,
                                   same.size() > 1 ? ", ..." : ""));
   return *chosen;
@@ -126,8 +126,8 @@ io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const 
     same->push_back(*as_grid);
   }
   if (sizes.empty())
-    throw scene::bad_input(
-        fmt::format("{}: it is HDF5 without an array of numbers of three dimensions; give a file of a grid", source));
+    throw scene::bad_input(fmt::format(
+        "{}: it is an HDF5 file without a three-dimensional array of numbers; give a file of a grid", source));
   io::ForeignContents contents;
   contents.format = "HDF5";
   const SameSize& chosen = choose_arrays(sizes, request.value("field", ""), contents.notes);
@@ -138,14 +138,15 @@ io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const 
                                           [](const GridArray& a, const GridArray& b) { return a.steps() < b.steps(); });
     contents.time_step = scene::chosen_step(requested_step(request), longest->steps(), source);
     if (longest->steps() > 1)
-      contents.notes.push_back(fmt::format("time steps are counted along the first of the dimensions of {}, {}",
-                                           longest->array->path, fmt::join(longest->array->lengths, " x ")));
+      contents.notes.push_back(
+          fmt::format("time steps are counted along the first dimension of {}, whose dimensions are {}",
+                      longest->array->path, fmt::join(longest->array->lengths, " x ")));
     std::size_t done = 0;
     for (const GridArray& array : chosen) {
       const std::size_t step =
           std::min<std::size_t>(contents.time_step.step, std::max<std::size_t>(array.steps(), 1) - 1);
       if (array.components > 1)
-        contents.notes.push_back(fmt::format("the last dimension of {}, of {}, is taken for components",
+        contents.notes.push_back(fmt::format("the last dimension of {}, of size {}, is used for components",
                                              array.array->path, array.components));
       part.point_fields.push_back(hold_step(holdings, file, array, step, array.array->path));
       report_progress(static_cast<double>(++done) / static_cast<double>(chosen.size()));
@@ -236,7 +237,7 @@ io::ForeignContents read_vtk_hdf_image(Holdings& holdings, const Hdf5File& file,
       const std::optional<GridArray> as = image_array(array, count);
       const std::string name = array.path.substr(group.size() + 1);
       if (!as) {
-        contents.notes.push_back(fmt::format("{} is left out: its dimensions, {}, are not the image's", name,
+        contents.notes.push_back(fmt::format("{} is left out: its dimensions, {}, differ from the image's", name,
                                              fmt::join(array.lengths, " x ")));
         continue;
       }

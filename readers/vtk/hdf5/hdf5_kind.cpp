@@ -48,7 +48,8 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
     const Hdf5File opened(file);
     if (!opened.is_open())
       throw scene::bad_input(fmt::format(
-          "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it again", file.string()));
+          "{}: it begins like an HDF5 file, but cannot be opened; it is truncated or damaged, write it again",
+          file.string()));
     require_sound_references(file, ReferencesMay::point_below);
     if (opened.has("VTKHDF")) {
       vtk_type = opened.text_of("VTKHDF", "Type");
@@ -74,7 +75,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
     if (kind == Kind::unknown) return read_arrays(holdings, opened, file.string(), request);
   }
   const auto refuse = [&](const char* what, const char* remedy) {
-    return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
+    return scene::bad_input(fmt::format("{}: it is an HDF5 file that contains {}; {}", file.string(), what, remedy));
   };
   if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // the file is not a grid
   if (kind != Kind::cgns && request.value("part", 0) > 0)
@@ -87,7 +88,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
           "save it as .vtu, .vtm, .vth or .vtp in ParaView");
     case Kind::cgns:
       if (!io::read_beginning(file, 8).starts_with("\x89HDF"))
-        throw refuse("CGNS behind a user block, which its library does not open",
+        throw refuse("CGNS after a user block, which the CGNS library cannot open",
                      "remove the block with HDF5's tools: h5unjam -i FILE -u BLOCK -o OUT.cgns");
       return read_cgns(holdings, file, request);
     case Kind::exodus:
@@ -95,11 +96,11 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
     case Kind::flash:
       return read_flash(holdings, file, request);
     case Kind::fluent:
-      throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
+      throw refuse("a Fluent case, which is supported only as text", "export CGNS, EnSight or a .cas without HDF5");
     case Kind::minc:
       return read_minc2(holdings, file, request);
     case Kind::med:
-      throw refuse("a MED mesh, which is recognized by its name only", "have that end in .med");
+      throw refuse("a MED mesh, which is recognized by its name only", "rename it to end in .med");
     case Kind::netcdf:
     case Kind::vtk_image:
     case Kind::unknown:

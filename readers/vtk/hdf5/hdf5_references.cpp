@@ -64,7 +64,7 @@ class References {
         if (is_virtual_in(in_file, dataset)) leads_[file].insert(in_file);
     for (const auto& [file, next] : leads_)
       if (leads_back(file))
-        throw refuse(file, "its virtual datasets lead back to themselves; the file is damaged, write it again");
+        throw refuse(file, "its virtual datasets refer back to themselves; the file is damaged, write it again");
   }
 
  private:
@@ -109,8 +109,9 @@ class References {
       };
       const std::string name = text(H5Pget_virtual_filename), source = text(H5Pget_virtual_dsetname);
       if ((name + source).find("%b") != std::string::npos)
-        throw refuse(
-            file, "a virtual dataset's sources are given by a pattern; write its numbers out with h5repack -l CONTI");
+        throw refuse(file,
+                     "the sources of a virtual dataset are given by a pattern, which is not supported; write its "
+                     "numbers out with h5repack -l CONTI");
       if (const auto in_file = lead_to(file, name)) sources_[file].emplace(*in_file, source);
     }
   }
@@ -135,12 +136,12 @@ class References {
     if (unknown) return named;
     const std::string name = scene::quote(named.filename().string());
     if (!std::filesystem::is_regular_file(file, unknown))
-      throw refuse(from, fmt::format("it leads to {}, which is not a regular file; put one there", name));
+      throw refuse(from, fmt::format("it refers to {}, which is not a regular file; put one there", name));
     if (may_ == ReferencesMay::point_below &&
         std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
-      throw refuse(
-          from,
-          fmt::format("it leads to {}, which is neither next to it nor below; move it there, and name it so", name));
+      throw refuse(from, fmt::format("it refers to {}, which is neither in its directory nor below; move that file "
+                                     "there and correct the reference",
+                                     name));
     return file;
   }
 

@@ -118,7 +118,7 @@ class HdfMesh {
       throw wrong("some of its parts have no number of points, cells or connectivity ids");
     const Stretch chosen = part_numbers(counts[0].size());
     if (chosen.end() > counts[0].size() || chosen.end() < chosen.first)
-      throw wrong(fmt::format("its step {} has parts up to {}, there are {}", step_.value_or(0), chosen.end(),
+      throw wrong(fmt::format("its step {} has parts up to {}, but there are only {}", step_.value_or(0), chosen.end(),
                               counts[0].size()));
     std::size_t points = at_step("Steps/PointOffsets").value_or(0), cells = at_step("Steps/CellOffsets").value_or(0),
                 uses = at_step("Steps/ConnectivityIdOffsets").value_or(0), offsets = cells + chosen.first;

@@ -174,7 +174,8 @@ CurvedGrid curved_grid(const NetcdfFile& file, const NetcdfVariable& variable, c
   if (std::any_of(axes.begin(), axes.end(),
                   [&](const NetcdfVariable* axis) { return !file.text(*axis, "bounds").empty(); }) &&
       !grid.has_cells)
-    notes.emplace_back("the bounds of its cells are not to be found: values are at the points between");
+    notes.emplace_back(
+        "the bounds of its cells cannot be found: values are placed at the given points, with cells between them");
   const std::span<const double> heights = grid.has_cells ? z_bounds : z;
   const std::size_t more = grid.has_cells ? 1 : 0;
   grid.points = {columns + more, rows + more, heights.size()};

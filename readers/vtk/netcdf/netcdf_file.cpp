@@ -20,11 +20,13 @@ bool is_number(nc_type type) { return type != NC_NAT && type != NC_CHAR && type 
 
 NetcdfFile::NetcdfFile(const std::filesystem::path& file) : source_(file.string()) {
   if (nc_open(file.c_str(), NC_NOWRITE, &id_) != NC_NOERR)
-    throw scene::bad_input(fmt::format("{}: it begins as NetCDF and cannot be opened; {}", source_, write_again));
+    throw scene::bad_input(
+        fmt::format("{}: it begins like a NetCDF file, but cannot be opened; {}", source_, write_again));
   try {
     const std::uint64_t least = least_netcdf_bytes(id_), size = io::require_file(file);
     if (size < least)
-      throw scene::bad_input(fmt::format("{}: it has {} bytes of at least {}; {}", source_, size, least, write_again));
+      throw scene::bad_input(
+          fmt::format("{}: it has {} bytes, but needs at least {}; {}", source_, size, least, write_again));
     add_variables(id_, "", 0);
   } catch (...) {
     nc_close(id_);

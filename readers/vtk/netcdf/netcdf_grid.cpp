@@ -106,8 +106,9 @@ const GridOfVariables& choose_grid(const std::vector<GridOfVariables>& grids, co
       chosen = &grid;
   for (const GridOfVariables& grid : grids)
     if (&grid != chosen)
-      notes.push_back(fmt::format("another grid, {}, has {}{}: name one by `field` to have it", grid.dimensions,
-                                  grid.fields.front().variable->path, grid.fields.size() > 1 ? ", ..." : ""));
+      notes.push_back(fmt::format("another grid, {}, has {}{}: to show it, name a variable with `field`",
+                                  grid.dimensions, grid.fields.front().variable->path,
+                                  grid.fields.size() > 1 ? ", ..." : ""));
   return *chosen;
 }
 
@@ -193,7 +194,7 @@ GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field,
   if (axis == 2 && counts_downwards(file, *coordinate)) {
     for (double& value : values) value = -value;
     const std::string units = file.text(*coordinate, "units");
-    notes.push_back(fmt::format("{} counts downwards: z is its negative{}", scene::quote(dimension.name),
+    notes.push_back(fmt::format("{} increases downwards: z is its negative{}", scene::quote(dimension.name),
                                 units.empty() ? "" : ", in " + scene::quote(units)));
   }
   return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
@@ -306,9 +307,9 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
   contents.format = "NetCDF";
   const std::vector<GridOfVariables> grids = grids_of(opened);
   if (grids.empty())
-    throw scene::bad_input(
-        fmt::format("{}: none of its variables has three dimensions (besides time); give a file of a grid in space",
-                    opened.source()));
+    throw scene::bad_input(fmt::format(
+        "{}: none of its variables has three dimensions (not counting time); give a file with a three-dimensional grid",
+        opened.source()));
   const GridOfVariables& grid = choose_grid(grids, request.value("field", ""), contents.notes);
   if (request.value("look", false)) {
     contents.parts.emplace_back().kind =

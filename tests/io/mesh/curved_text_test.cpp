@@ -157,7 +157,7 @@ TEST_F(CurvedText, NotesThatEnSight6CellsUseTheirCorners) {
     const cells::MeshFile mesh = read("six.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: six.geo\n", "");
     EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-12);
     const bool is_noted = std::ranges::any_of(mesh.notes, [](const std::string& note) {
-      return note.find("(hexa20) are drawn by their corners") != std::string::npos;
+      return note.find("(hexa20) are drawn as linear cells") != std::string::npos;
     });
     EXPECT_EQ(is_noted, is_quadratic);
   }
@@ -274,7 +274,7 @@ TEST_F(CurvedText, RefusesIdeasElementsThatGmshOmitsOrMisplaces) {
   const std::vector<int> four = {1, 2, 3, 4};
   refused(universal(corners, 111, four, 2, systems(1, "  0.0 0.0 0.0")),
           {"a.unv: point 1 is in the coordinate system 2, which is cylindrical; export"});
-  refused(universal(corners, 111, four, 2, systems(0, "  0.0 0.0 4.0D+00")), {"which is turned or moved; export"});
+  refused(universal(corners, 111, four, 2, systems(0, "  0.0 0.0 4.0D+00")), {"which is rotated or moved; export"});
   for (const int system : {1, 2}) {
     const auto file =
         folder.write("a.unv", universal(corners, 111, four, system, systems(system == 1 ? 2 : 0, "  0.0 0.0 0.0")));

@@ -312,7 +312,7 @@ TEST_F(Filled, RefusesExcessiveTetCountsWithARemedy) {
   ::getrusage(RUSAGE_CHILDREN, &before);
   expect_bad_input(
       [&] { read_mesh(folder.write("plate.poly", box_poly(1, 1, 1e-6))); },
-      {"plate.poly: filling it by TetGen takes ", " can explain; correct the surface, or set `max_volume`"});
+      {"plate.poly: filling it by TetGen takes ", " should take; correct the surface, or set `max_volume`"});
   ::getrusage(RUSAGE_CHILDREN, &after);
   EXPECT_LT(after.ru_maxrss, (256 + 60) << 10) << "KiB, 60 MiB of them the program itself";
   EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 20);
