@@ -38,8 +38,8 @@ glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degre
   const glm::dvec3 scale = xy_in_degrees ? scale_for_degrees(box) : glm::dvec3(1);
   if (scale != glm::dvec3(1))
     notes.push_back(
-        fmt::format("x and y are in degrees and z is not: z is multiplied by {:g}, for the box was thinner than 1:20; "
-                    "`scale` 1,1,1 keeps it as it is",
+        fmt::format("x and y are in degrees, but z is not: z is multiplied by {:g}, because the box was thinner than "
+                    "1:20; `scale` 1,1,1 leaves z unchanged",
                     scale.z));
   return scale;
 }

@@ -45,7 +45,7 @@ void require_blocks(const BlockChoice& choice, std::span<const std::string> bloc
     const auto nearest = blocks.size() > 1 ? nearest_name(name, blocks) : std::nullopt;
     throw scene::bad_input(
         fmt::format("{}: there is no block {}{}", source, scene::quote(name),
-                    blocks.empty() ? ": it is not made of named blocks; " + remedy
+                    blocks.empty() ? ": it has no named blocks; " + remedy
                                    : "; it has " + list(blocks, with_surfaces) +
                                          (nearest ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : "")));
   }
@@ -58,7 +58,7 @@ std::string note_on_surfaces(std::string_view what, std::span<const std::string>
     text += (text.empty() ? "" : ", ") + scene::quote(name);
   if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
   return names.size() == 1 ? fmt::format("1 {} is a surface and is left out: {} (`surface` shows it)", what, text)
-                           : fmt::format("{} {}{} are surfaces and are left out: {} (`surface` shows one)",
+                           : fmt::format("{} {}{} are surfaces and are left out: {} (`surface` shows them)",
                                          names.size(), what, what.ends_with("ch") ? "es" : "s", text);
 }
 

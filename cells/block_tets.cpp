@@ -96,8 +96,8 @@ void BlockCells::split_cell(std::size_t c, SplitScratch& work, BlockTets& out) c
   if (shape.kind == CellKind::polyhedron || shape.kind == CellKind::convex_point_set)
     return split_polyhedron(c, shape.kind, work, out);
   if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
-    throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it must have {}; correct the cell types", source_,
-                                       place(c), cell_type_name(type), nodes,
+    throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, but must have {}; correct the cell types",
+                                       source_, place(c), cell_type_name(type), nodes,
                                        shape.nodes ? shape.nodes : shape.corners));
   const std::uint32_t* const first = all_tets ? block_.tets[c].data() : &block_.connectivity[block_.offsets[c]];
   const bool is_curved = shape.higher_order && curved_.lattice(c) != nullptr;
@@ -141,7 +141,7 @@ void BlockCells::split_curved(std::size_t c, SplitScratch& work, BlockTets& out)
     curved_.split(c, work.curved);
   } catch (const std::length_error&) {
     throw scene::bad_input(
-        fmt::format("{}: {} takes more than {} tets to come near to it; allow a larger difference "
+        fmt::format("{}: {} cannot be approximated closely enough by {} tets; allow a larger difference "
                     "(`higher_order_tolerance`) or more tets (`higher_order_tets`)",
                     source_, place(c), curved_.settings().limit));
   }
@@ -151,7 +151,7 @@ void BlockCells::split_curved(std::size_t c, SplitScratch& work, BlockTets& out)
   const std::uint64_t so_far = curved_tets_.fetch_add(split.tets().size()) + split.tets().size();
   if (so_far > most_curved_tets_)
     throw scene::bad_input(
-        fmt::format("{}: its higher-order cells, as far as {}, take more than {} tets to come near to them; allow a "
+        fmt::format("{}: its higher-order cells up to {} cannot be approximated closely enough by {} tets; allow a "
                     "larger difference (`higher_order_tolerance`) or more tets (`higher_order_tets`)",
                     source_, place(c), most_curved_tets_));
   const std::uint32_t* const node = &block_.connectivity[block_.offsets[c]];
@@ -180,7 +180,7 @@ void BlockCells::split_polyhedron(std::size_t c, CellKind kind, SplitScratch& wo
   const bool has_faces = kind == CellKind::polyhedron;
   if (has_faces && (block_.face_locations.empty() || block_.face_locations[c] == CellBlock::no_faces))
     throw scene::bad_input(
-        fmt::format("{}: {} is a polyhedron without a list of its faces; write it with them", source_, place(c)));
+        fmt::format("{}: {} is a polyhedron without a list of its faces; write it with its faces", source_, place(c)));
   work.corners.clear();
   std::span<const std::uint32_t> faces;
   if (has_faces) {

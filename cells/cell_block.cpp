@@ -35,7 +35,7 @@ void require_faces(const CellBlock& block, const std::string& where) {
   constexpr std::uint8_t polyhedron = vtk_number(CellType::polyhedron);
   if (block.face_locations.empty() && block.faces.empty()) return;
   if (block.face_locations.size() != block.types.size())
-    throw scene::bad_input(fmt::format("{}: {} places of faces for {} cells; write one for each cell", where,
+    throw scene::bad_input(fmt::format("{}: it has {} face locations for {} cells; write one for each cell", where,
                                        block.face_locations.size(), block.types.size()));
   const std::size_t numbers = block.faces.size(), points = block.positions.size();
   std::size_t used = 0;
@@ -51,7 +51,8 @@ void require_faces(const CellBlock& block, const std::string& where) {
     std::size_t at = first + 1;
     for (std::uint32_t left = block.faces[first]; left > 0; --left) {
       if (at >= numbers || block.faces[at] >= numbers - at)
-        throw refuse(fmt::format("of {} faces that end beyond the {} numbers there are", block.faces[first], numbers));
+        throw refuse(
+            fmt::format("of {} faces whose lists end after the last of the {} numbers", block.faces[first], numbers));
       const std::size_t end = at + 1 + block.faces[at];
       for (++at; at < end; ++at)
         if (block.faces[at] >= points)

@@ -108,7 +108,7 @@ std::optional<FieldChoice> resolve(const std::string& requested, std::optional<A
   const int component = parse_component(word_after);
   if (component == -2 || component >= field->components)
     throw scene::bad_input(fmt::format(
-        "{}: field '{}' has {} component{}, no '{}'; use {}", source, field->name, field->components,
+        "{}: field '{}' has {} component{}, but not '{}'; use {}", source, field->name, field->components,
         field->components == 1 ? "" : "s", word_after,
         field->components == 1 ? "the name alone" : fmt::format(":mag or :0 to :{}", field->components - 1)));
   return choice_of(*field, component);
@@ -177,14 +177,16 @@ std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, 
     return choice_of(*f, std::nullopt);
   if (const auto* f = first_quantity(fields, is_quantity)) {
     FieldChoice choice = choice_of(*f, std::nullopt);
-    choice.notes.push_back(fmt::format("'{}' is within {:.2g} of zero everywhere, perhaps noise: no other field varies",
-                                       f->name, std::max(std::abs(f->low), std::abs(f->high))));
+    choice.notes.push_back(
+        fmt::format("'{}' is within {:.2g} of zero everywhere, so it may be noise, but no other field varies", f->name,
+                    std::max(std::abs(f->low), std::abs(f->high))));
     return choice;
   }
   if (const auto* f = first_quantity(fields, may_count_by_chance)) {
     FieldChoice choice = choice_of(*f, std::nullopt);
     choice.notes.push_back(
-        fmt::format("'{}' is {:g} to {:g}, each once, perhaps ids: no other field varies", f->name, f->low, f->high));
+        fmt::format("'{}' has the values {:g} to {:g}, each once, so they may be ids, but no other field varies",
+                    f->name, f->low, f->high));
     return choice;
   }
   if (shape) return std::nullopt;
@@ -202,10 +204,10 @@ FieldChoice no_array(std::span<const FieldSummary> fields, bool shape) {
   if (!shape)
     none.notes.emplace_back("the file has no field: every point has the value 1");
   else if (fields.empty())
-    none.notes.emplace_back("the file has no field: its shape is drawn, near parts lighter");
+    none.notes.emplace_back("the file has no field: its shape is drawn, with lighter near parts");
   else
     none.notes.push_back(
-        fmt::format("of its fields none varies that is not a label or index: its shape is drawn, near parts lighter; "
+        fmt::format("only labels and indices vary among its fields: its shape is drawn, with lighter near parts; "
                     "`field` draws one of {}",
                     list(fields)));
   return none;
@@ -352,13 +354,14 @@ FieldChoice choose_field(const std::string& requested, std::span<const FieldSumm
   if (!choice) choice = resolve(requested, std::nullopt, fields, source);
   if (!choice)
     throw scene::bad_input(
-        fields.empty() ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, requested)
-                       : fmt::format("{}: no field '{}'; {}it has {}", source, requested,
+        fields.empty() ? fmt::format("{}: there is no field '{}', because the file has no fields; leave `field` out",
+                                     source, requested)
+                       : fmt::format("{}: there is no field '{}'; {}it has {}", source, requested,
                                      meant_field(requested, fields), list(fields)));
   if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
       !requested.starts_with("point:"))
     choice->notes.push_back(fmt::format(
-        "'{0}' is both a point and a cell field: the point one is taken, cell:{0} asks for the other", choice->name));
+        "'{0}' is both a point and a cell field: the point field is used, cell:{0} selects the other", choice->name));
   return *choice;
 }
 
@@ -370,8 +373,8 @@ void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const s
                    const std::string& source) {
   if (choice.component != magnitude || requested.ends_with(":mag") || requested.ends_with(":magnitude")) return;
   throw scene::bad_input(
-      fmt::format("{}: '{}' has colors of {} components, which are not drawn as colors; choose one with `field` {}:0 "
-                  "(red), or their length with {}:mag",
+      fmt::format("{}: '{}' has colors of {} components, which are not drawn as colors; choose one component with "
+                  "`field` {}:0 (red), or their length with {}:mag",
                   source, field.name, field.components, field.name, field.name));
 }
 

@@ -89,10 +89,9 @@ class Assembly {
  private:
   void require_points(std::size_t points) const {
     if (points > std::numeric_limits<std::uint32_t>::max())
-      throw scene::bad_input(
-          fmt::format("{}: {} points; one process takes at most 2^32 - 1, convert to a .pvtu of "
-                      "pieces",
-                      source_, points));
+      throw scene::bad_input(fmt::format(
+          "{}: it has {} points, but one process supports at most 2^32 - 1; convert it to a .pvtu of pieces", source_,
+          points));
   }
 
   /// Reads the scalars of the block's points (appending them to those of previous blocks) or of its cells. They are NaN
@@ -120,7 +119,7 @@ class Assembly {
     if (!field || summary == fields_.end() || field->components != summary->components) {
       if (block.cell_count() > 0 && !block.source.empty())
         throw scene::bad_input(fmt::format(
-            "{}: it lacks the {} field '{}' of {} that other pieces have; write all pieces with the same fields",
+            "{}: it lacks the {} field '{}' of {}, which other pieces have; write all pieces with the same fields",
             block.source, point ? "point" : "cell", choice_.name,
             summary == fields_.end() || summary->components == 1 ? "one component"
                                                                  : fmt::format("{} components", summary->components)));
@@ -296,7 +295,7 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
   require_selected(n, source);
   if (n.cells_read == 0)
     throw scene::bad_input(
-        fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
+        fmt::format("{}: it has no cells, so nothing is left to render; check how it was written", source));
   if (n.tets_made == 0)
     throw scene::bad_input(fmt::format(
         "{}: nothing is left to render: of {} cells {} are not volumes, {} ghosts, {} hidden, {} hold NaN, infinite or "
@@ -318,7 +317,8 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
   }
   if (higher_order.divided > 0)
     notes.push_back(
-        fmt::format("{} higher-order cells are drawn as {} tets, off by {:.2g} in position and {:.2g} in value at most",
+        fmt::format("{} higher-order cells are drawn as {} tets, which differ from them by at most {:.2g} in position "
+                    "and {:.2g} in value",
                     higher_order.divided, higher_order.tets, higher_order.position_error, higher_order.field_error));
   return notes;
 }
@@ -327,8 +327,8 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   std::vector<std::string> warnings;
   if (higher_order.by_corners > 0)
     warnings.push_back(
-        fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
-                    "for what that leaves out",
+        fmt::format("{} higher-order cells are rendered as linear cells with the same corners, without a bound on the "
+                    "error of this simplification",
                     higher_order.by_corners));
   const std::tuple<const char*, std::uint64_t, std::uint64_t> kinds[] = {
       {"hexahedra", n.hexahedra, n.hexahedra_tangled},
@@ -339,8 +339,8 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   for (const auto& [kind, count, tangled] : kinds)
     if (count > 0 && tangled == count)
       warnings.push_back(
-          fmt::format("all {} {} are tangled, so they are drawn wrongly: the order of their nodes may not be VTK's; "
-                      "write them in VTK's order",
+          fmt::format("all {} {} are tangled, so they are drawn incorrectly: the order of their nodes may not be "
+                      "VTK's; write them in VTK's order",
                       count, kind));
   if (n.cells_open > 0)
     warnings.push_back(
@@ -351,9 +351,8 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
         n.polyhedra_tangled));
   if (n.cells_duplicate > 0)
     warnings.push_back(fmt::format(
-        "{} cell{} the corners of other cells, as in parts of a mesh that are given twice, and {} drawn on top of "
-        "them: "
-        "`drop_duplicates` draws each once, or name the parts to draw by `block`",
+        "{} cell{} the corners of other cells, as if parts of the mesh were given twice, and {} drawn on top of them: "
+        "`drop_duplicates` draws each cell once; `block` selects the parts to draw",
         n.cells_duplicate, n.cells_duplicate == 1 ? " has" : "s have", n.cells_duplicate == 1 ? "is" : "are"));
   return warnings;
 }

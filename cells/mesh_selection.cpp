@@ -261,14 +261,13 @@ void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts&
 
 void require_selected(const MeshCounts& n, const std::string& source) {
   if (n.tets_made > 0 || n.cells_out_of_range + n.cells_clipped == 0) return;
-  const std::string kept = n.cells_clipped == 0 ? "no cell has all its values in `threshold`; give a wider range"
-                           : n.cells_out_of_range == 0
-                               ? "nothing is on the side that `clip` keeps, to which its normal points; turn the "
-                                 "normal round or move it"
-                               : fmt::format(
-                                     "{} cells are not in `threshold`, and `clip` removes the others; give a "
-                                     "wider range or move the plane",
-                                     n.cells_out_of_range);
+  const std::string kept =
+      n.cells_clipped == 0 ? "no cell has all its values in `threshold`; give a wider range"
+      : n.cells_out_of_range == 0
+          ? "nothing is on the side that `clip` keeps, to which its normal points; reverse the normal or move the plane"
+          : fmt::format(
+                "`threshold` removes {} cells, and `clip` removes the others; give a wider range or move the plane",
+                n.cells_out_of_range);
   throw scene::bad_input(
       fmt::format("{}: nothing is left to render: {} (`tessera info` prints bounds and ranges)", source, kept));
 }

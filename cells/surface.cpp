@@ -104,7 +104,7 @@ void require_closed(const Surface& surface, const std::string& source) {
   if (open == 0) return;
   const glm::dvec3 p = surface.points[first >> 32], q = surface.points[first & UINT32_MAX];
   throw scene::bad_input(
-      fmt::format("{}: the surface is not closed: {} edges have one face only, one from ({:.6g}, {:.6g}, "
+      fmt::format("{}: the surface is not closed: {} edges have only one face, one of them from ({:.6g}, {:.6g}, "
                   "{:.6g}) to ({:.6g}, {:.6g}, {:.6g}); close its holes",
                   source, open, p.x, p.y, p.z, q.x, q.y, q.z));
 }

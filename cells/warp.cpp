@@ -41,10 +41,10 @@ void move_points(CellBlock& block, const BlockField& vector, double factor) {
 
 scene::Error unknown_vector(const std::string& name, std::span<const std::string> names, const std::string& source) {
   if (names.empty())
-    return scene::bad_input(
-        fmt::format("{}: `warp`: it has no vectors at its points, so '{}' is not one; leave it out", source, name));
+    return scene::bad_input(fmt::format(
+        "{}: `warp`: it has no vectors at its points, so '{}' cannot be one; leave `warp` out", source, name));
   const auto near = nearest_name(name, names);
-  return scene::bad_input(fmt::format("{}: `warp`: no point vector '{}'; {}it has '{}'", source, name,
+  return scene::bad_input(fmt::format("{}: `warp`: there is no point vector '{}'; {}it has '{}'", source, name,
                                       near ? fmt::format("did you mean '{}'? ", *near) : "", fmt::join(names, "', '")));
 }
 
@@ -65,7 +65,7 @@ void warp(MeshBlocks& read, const std::optional<Warp>& request, const std::strin
   if (by.vector.empty()) return;
   if (!read.fields.empty())  // for blocks with a single field; see MeshBlocks
     throw scene::bad_input(
-        fmt::format("{}: `warp`: a mesh with levels of refinement is not moved; leave it out", source));
+        fmt::format("{}: `warp`: a mesh with levels of refinement cannot be moved; leave `warp` out", source));
   std::size_t moved = 0;
   for (CellBlock& block : read.blocks)
     for (const BlockField& field : block.fields)

@@ -49,18 +49,21 @@ double low_end(const AmrBlock& part, std::size_t axis) {
 void require_block(const AmrBlock& part, const std::string& source) {
   const std::string name = where(part, source);
   if (!part.is_image)
-    throw scene::bad_input(fmt::format("{}: a block of an AMR mesh has to be image data; write it as such", name));
+    throw scene::bad_input(
+        fmt::format("{}: a block of an AMR mesh has to be image data; write it as image data", name));
   constexpr std::array<double, 9> unturned{1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (part.direction != unturned)
-    throw scene::bad_input(
-        fmt::format("{}: it is turned, blocks of AMR meshes must be aligned with the axes; turn it back", name));
+    throw scene::bad_input(fmt::format(
+        "{}: it is rotated, but blocks of AMR meshes must be aligned with the axes; write it without the rotation",
+        name));
   for (std::size_t a = 0; a < 3; ++a) {
     if (cells_along(part, a) < 1)
-      throw scene::bad_input(fmt::format("{}: it is flat, no cells of volume; give a three-dimensional mesh", name));
+      throw scene::bad_input(
+          fmt::format("{}: it is flat, so it has no volume cells; give a three-dimensional mesh", name));
     if (!(part.spacing[a] > 0) || !std::isfinite(part.spacing[a]) || !std::isfinite(low_end(part, a)))
       throw scene::bad_input(
-          fmt::format("{}: its spacing along {} is {}, its origin {}; give numbers, spacings above 0", name, "xyz"[a],
-                      part.spacing[a], part.origin[a]));
+          fmt::format("{}: its spacing along {} is {} and its origin {}; give finite numbers, with spacings above 0",
+                      name, "xyz"[a], part.spacing[a], part.origin[a]));
   }
 }
 
@@ -84,14 +87,14 @@ std::vector<std::int32_t> level_sizes(std::span<const AmrBlock* const> levels, c
     for (std::size_t a = 0; a < 3; ++a)
       if (!(std::abs(coarse[a] / fine[a] - ratio) <= 1e-3 * ratio))
         throw scene::bad_input(
-            fmt::format("{}: cells of level {} are {} times those of the next along {}, {} times along x; only whole "
-                        "ratios, the same along all axes, are read",
+            fmt::format("{}: cells of level {} are {} times as long as those of the next level along {}, and {} times "
+                        "along x; only whole ratios that are the same along all axes are supported",
                         source, l, coarse[a] / fine[a], "xyz"[a], ratio));
     const double steps = ratio * size[l + 1];
     if (ratio > 64 || steps > most_corners)
       throw scene::bad_input(
-          fmt::format("{}: cells of level {} are {} times those of the next, up to 64 are read; write "
-                      "the levels between",
+          fmt::format("{}: cells of level {} are {} times as long as those of the next level, but only ratios up to 64 "
+                      "are supported; write the levels between",
                       source, l, ratio));
     size[l] = static_cast<std::int32_t>(steps);
   }
@@ -99,8 +102,9 @@ std::vector<std::int32_t> level_sizes(std::span<const AmrBlock* const> levels, c
 }
 
 scene::Error too_long(double cells, const std::string& source) {
-  return scene::bad_input(fmt::format("{}: its finest level would be {} cells long, the limit is {}; leave out levels",
-                                      source, cells, most_corners));
+  return scene::bad_input(
+      fmt::format("{}: its finest level would be {} cells long, but the limit is {}; leave out levels", source, cells,
+                  most_corners));
 }
 
 /// Places the blocks on the lattice.
@@ -123,14 +127,15 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
       const auto axis = static_cast<int>(a);
       const double own = amr.lattice.spacing[axis] * size, at = (low_end(part, a) - anchor[axis]) / own;
       if (!(std::abs(part.spacing[a] / own - 1) <= 1e-3))
-        throw scene::bad_input(fmt::format("{}: its spacing along {} is {}, that of its level {}; write it again",
-                                           where(part, source), "xyz"[a], part.spacing[a], own));
+        throw scene::bad_input(
+            fmt::format("{}: its spacing along {} is {}, but that of its level is {}; write it again",
+                        where(part, source), "xyz"[a], part.spacing[a], own));
       if (!(std::abs(at) * size < most_corners)) throw too_long(std::abs(at) * size, source);
       if (!(std::abs(at - std::round(at)) < 0.02))
-        throw scene::bad_input(fmt::format(
-            "{}: it begins {} cells of its level from the coarsest block along {}, which has to be a whole number; "
-            "write it again",
-            where(part, source), at, "xyz"[a]));
+        throw scene::bad_input(
+            fmt::format("{}: it begins {} cells of its level from the coarsest block along {}, but this distance has "
+                        "to be a whole number of cells; write it again",
+                        where(part, source), at, "xyz"[a]));
       low[a] = std::llround(at) * size;
       const std::int64_t high = cells_along(part, a) < most_corners ? low[a] + cells_along(part, a) * size : INT64_MAX;
       first[a] = std::min(first[a], low[a]), last[a] = std::max(last[a], high);
@@ -140,7 +145,8 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
     }
     if (static_cast<double>(placed.cells[0]) * placed.cells[1] * placed.cells[2] >
         std::numeric_limits<std::uint32_t>::max())
-      throw scene::bad_input(fmt::format("{}: more than 2^32 cells in one block; divide it", where(part, source)));
+      throw scene::bad_input(
+          fmt::format("{}: more than 2^32 cells in one block are too many; divide it", where(part, source)));
     lows.push_back(low);
     amr.parts.push_back(placed);
   }
@@ -247,8 +253,8 @@ class Coverage {
     }
     if (amr_.leaves.size() > 1000000 + 8 * (read_ + marks_.size()))
       throw scene::bad_input(
-          fmt::format("{}: its levels' blocks cut each other's cells to too many pieces; write blocks "
-                      "that cover whole cells of the coarser levels",
+          fmt::format("{}: the blocks of its levels cut each other's cells into too many pieces; write blocks that "
+                      "cover whole cells of the coarser levels",
                       source_));
     AmrLeaf child = cell;
     ++child.level;

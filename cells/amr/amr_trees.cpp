@@ -19,8 +19,8 @@ std::string piece_words(const AmrBlock& part, const std::string& source) {
 }
 
 scene::Error unfit(const AmrBlock& part, const std::string& source) {
-  return scene::bad_input(
-      fmt::format("{}: its trees do not fit its grid; it is damaged, write it again", piece_words(part, source)));
+  return scene::bad_input(fmt::format("{}: its trees do not match its grid; the file is damaged, write it again",
+                                      piece_words(part, source)));
 }
 
 std::int64_t roots_along(const AmrBlock& part, std::size_t axis) { return part.extent[2 * axis + 1]; }
@@ -38,7 +38,7 @@ std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& sourc
   for (std::size_t a = 0; a < 3; ++a)
     if (!(static_cast<double>(roots_along(part, a)) * steps <= most_amr_corners))
       throw scene::bad_input(
-          fmt::format("{}: its finest level would be {} cells long, the limit is {}; leave out levels",
+          fmt::format("{}: its finest level would be {} cells long, but the limit is {}; leave out levels",
                       piece_words(part, source), static_cast<double>(roots_along(part, a)) * steps, most_amr_corners));
   return static_cast<std::int32_t>(steps);
 }
@@ -50,8 +50,8 @@ void require_rising(std::span<const double> at, std::int32_t steps, std::size_t 
     if (!std::isfinite(at[n]) || !std::isfinite(at[n + 1]) ||
         !(step > 4 * std::numeric_limits<double>::epsilon() * size))
       throw scene::bad_input(
-          fmt::format("{}: its coordinates along {} go from {} to {}, too close for {} cells of the finest level; give "
-                      "coordinates that rise, or fewer levels",
+          fmt::format("{}: its coordinates along {} go from {} to {}, which is too short for {} cells of the finest "
+                      "level; give increasing coordinates, or fewer levels",
                       source, "xyz"[axis], at[n], at[n + 1], steps));
   }
 }
@@ -121,8 +121,9 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
   for (const AmrBlock& part : trees) {
     if (part.levels < 1 || part.levels > 64 || part.branching < 2) throw unfit(part, source);
     if (part.branching != first.branching || part.extent != first.extent)
-      throw scene::bad_input(fmt::format("{}: its grid is not that of piece '{}'; write all pieces of one data set",
-                                         piece_words(part, source), first.name));
+      throw scene::bad_input(
+          fmt::format("{}: its grid differs from that of piece '{}'; write all pieces of one data set",
+                      piece_words(part, source), first.name));
     levels = std::max(levels, part.levels);
   }
   amr.size.assign(static_cast<std::size_t>(levels), 1);
@@ -135,10 +136,9 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
     require_rising(amr.lattice.corners[a], amr.lattice.coarsest, a, source);
     for (std::size_t p = 1; p < trees.size(); ++p)
       if (coordinates_of(trees[p], a, source) != amr.lattice.corners[a])
-        throw scene::bad_input(
-            fmt::format("{}: its coordinates along {} are not those of piece '{}'; write all pieces "
-                        "of one data set",
-                        piece_words(trees[p], source), "xyz"[a], first.name));
+        throw scene::bad_input(fmt::format(
+            "{}: its coordinates along {} differ from those of piece '{}'; write all pieces of one data set",
+            piece_words(trees[p], source), "xyz"[a], first.name));
   }
   TreeLeaves leaves(amr, trees.size() > 1, source);
   for (const AmrBlock& block : trees) leaves.add(block, grid);

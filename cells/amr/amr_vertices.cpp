@@ -33,7 +33,7 @@ std::uint32_t AmrVertices::add(const AmrIndex& p) {
   const std::size_t slot = slot_of(p);
   if (slots_[slot] == none) {
     if (points_.size() + 1 >= none)
-      throw scene::bad_input("an AMR mesh: more than 2^32 corners of cells; give fewer levels or a part of it");
+      throw scene::bad_input("an AMR mesh: it has more than 2^32 cell corners; give fewer levels or a part of it");
     slots_[slot] = static_cast<std::uint32_t>(points_.size());
     points_.push_back(p);
   }

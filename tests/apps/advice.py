@@ -446,7 +446,7 @@ NDims = 3 => NDims = 2 => a volume has three, or four with time"""),
 >0 1 2 3</DataArray>\n<DataArray type="Int64" Name="offsets"
     => >0 1 2 9</DataArray>\n<DataArray type="Int64" Name="offsets" => write cells and points from one mesh
 >10< => >64< => split such cells into tetrahedra first
->10< => >42< => is a polyhedron without a list of its faces; write it with them
+>10< => >42< => is a polyhedron without a list of its faces; write it with its faces
 NumberOfPoints="4" => NumberOfPoints="99999999999" => export it again
 VTKFile type => File type => check that it is one
 </VTKFile> => => the file is truncated or damaged, export it again"""),

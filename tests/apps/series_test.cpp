@@ -139,7 +139,7 @@ TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
   EXPECT_FALSE(std::filesystem::exists(folder / "f_0.pfm"));
   const auto named = tessera(arguments({meshes[0], folder / "renamed.vtu"}, "f_%d.pfm", {"--field", "f"}));
   EXPECT_EQ(named.status, 2);
-  EXPECT_NE(named.err.find("renamed.vtu: no field 'f'"), std::string::npos) << named.err;
+  EXPECT_NE(named.err.find("renamed.vtu: there is no field 'f'"), std::string::npos) << named.err;
 }
 
 TEST_F(Series, FaultsAreOneLineBeforeAnythingIsRendered) {

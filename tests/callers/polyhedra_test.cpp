@@ -70,7 +70,7 @@ TEST(CallersPolyhedra, RefusesInvalidFacesWithTheirPlace) {
   EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron with point 9 in a face, of 9 points"), std::string::npos)
       << house.fault();
   house = House(), house.faces[0] = 6;
-  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron of 6 faces that end beyond"), std::string::npos);
+  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron of 6 faces whose lists end after"), std::string::npos);
   house = House(), house.faces[5] = -1;
   EXPECT_NE(house.fault().find("mesh: number of faces 5 is -1"), std::string::npos);
   house = House(), house.locations[1] = 22;

@@ -35,7 +35,7 @@ std::string zone(int number, int x) {
 TEST(BlockChoice, SurfacesAreNotedByName) {
   const std::vector<std::string> two{"inlet", "walls"}, many(23, "x");
   EXPECT_EQ(cells::note_on_surfaces("patch", two),
-            "2 patches are surfaces and are left out: 'inlet', 'walls' (`surface` shows one)");
+            "2 patches are surfaces and are left out: 'inlet', 'walls' (`surface` shows them)");
   EXPECT_EQ(cells::note_on_surfaces("side set", std::span(two).first(1)),
             "1 side set is a surface and is left out: 'inlet' (`surface` shows it)");
   EXPECT_NE(cells::note_on_surfaces("block", many).find("'x' and 3 more (`surface`"), std::string::npos);

@@ -439,8 +439,9 @@ TEST(CurvedSplit, RefusesCellsThatNeedUnboundedTets) {
   const auto planning = [](const auto&, const ReadOptions& o, const auto&...) {
     return cells::HigherOrderPlan{{{.position = o.higher_order_tolerance}, 5000}, o.higher_order_tolerance};
   };
-  test::expect_bad_input([&] { cells::assemble_mesh({folded_box(1, 2)}, options, "mesh", planning); },
-                         {"mesh: cell 0 takes more than 5000 tets", "`higher_order_tolerance`"});
+  test::expect_bad_input(
+      [&] { cells::assemble_mesh({folded_box(1, 2)}, options, "mesh", planning); },
+      {"mesh: cell 0 cannot be approximated closely enough by 5000 tets", "`higher_order_tolerance`"});
   ReadOptions remedy = options;
   remedy.higher_order_tolerance = 0.1;
   EXPECT_NO_THROW(cells::assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
@@ -493,7 +494,7 @@ TEST(CurvedSplit, RefusesMeshesThatNeedUnboundedTets) {
   EXPECT_EQ(tets_of(2, 2 * alone), 2 * alone);
   const auto expect_refusal = [&](std::size_t blocks, std::uint64_t all) {
     test::expect_bad_input([&] { tets_of(blocks, all); },
-                           {"mesh: its higher-order cells, as far as ", " take more than ", "`higher_order_tets`"});
+                           {"mesh: its higher-order cells up to ", " take more than ", "`higher_order_tets`"});
   };
   expect_refusal(1, alone - 64 * block.types.size() - 1);
   expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each alone is below the limit

@@ -166,7 +166,7 @@ TEST(FieldChoice, IdsAreTheLastChoiceAndAreNoted) {
   const cells::FieldChoice chosen = cells::choose_field("", summary(std::vector{few}), "mesh.vtu", true);
   EXPECT_EQ(chosen.label, "p");
   ASSERT_EQ(chosen.notes.size(), 2u);
-  EXPECT_NE(chosen.notes[1].find("perhaps ids"), std::string::npos);
+  EXPECT_NE(chosen.notes[1].find("they may be ids"), std::string::npos);
   const cells::CellBlock numbered = block_with({integers("p", {0, 1, 2, 3, 4, 5, 6, 7}), constant});
   EXPECT_TRUE(cells::choose_field("", summary(std::vector{numbered}), "mesh.vtu", true).shape);
   // Fields that the file marks as ids.
@@ -196,7 +196,7 @@ TEST(FieldChoice, ReportsAFileWithoutFields) {
   const cells::FieldChoice choice = choose("", cells::CellBlock{});
   EXPECT_TRUE(choice.name.empty());
   ASSERT_EQ(choice.notes.size(), 1u);
-  EXPECT_NE(message_of([] { choose("x", cells::CellBlock{}); }).find("the file has none"), std::string::npos);
+  EXPECT_NE(message_of([] { choose("x", cells::CellBlock{}); }).find("the file has no fields"), std::string::npos);
 }
 
 TEST(FieldChoice, ReadsComponents) {
@@ -206,7 +206,7 @@ TEST(FieldChoice, ReadsComponents) {
   EXPECT_EQ(choose("Momentum:2", flow).label, "Momentum:z");
   EXPECT_EQ(choose("point:Momentum:x", flow).component, 0);
   EXPECT_NE(message_of([] { choose("Momentum:3", flow); }).find("use :mag or :0 to :2"), std::string::npos);
-  EXPECT_NE(message_of([] { choose("Momentum:w", flow); }).find("has 3 components, no 'w'"), std::string::npos);
+  EXPECT_NE(message_of([] { choose("Momentum:w", flow); }).find("has 3 components, but not 'w'"), std::string::npos);
   EXPECT_NE(message_of([] { choose("Density:y", flow); }).find("use the name alone"), std::string::npos);
 }
 

@@ -215,7 +215,7 @@ TEST(ExodusSteps, AWarpNamesVectorAndFactor) {
   EXPECT_NEAR(volume_of(folder / "a.exo", Warp{"disp", -0.1}), 0.7, 1e-12);
   EXPECT_NEAR(volume_of(folder / "a.exo", Warp{"dissipation", 2}), 7, 1e-12);
   test::expect_bad_input([&] { volume_of(folder / "a.exo", Warp{"dips"}); },
-                         {"`warp`: no point vector 'dips'", "did you mean 'disp'?", "'dissipation'"});
+                         {"`warp`: there is no point vector 'dips'", "did you mean 'disp'?", "'dissipation'"});
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST_F(Hdf5References, ByAPatternOfNamesAreRefused) {
 }
 
 TEST_F(Hdf5References, ToMissingFilesAreLeftToTheLibrary) {
-  expect_refused(linked("a.vtkhdf", "gone.vtkhdf"), "it holds no cells");
+  expect_refused(linked("a.vtkhdf", "gone.vtkhdf"), "it has no cells");
   EXPECT_EQ(read_mesh(with_virtual_field("v.vtkhdf", "gone.vtkhdf", "/f")).mesh.scalars.size(), 5u);
 }
 

@@ -149,7 +149,7 @@ TEST(HyperTrees, PiecesAreOneGridAndGhostsAreLeftOut) {
   TreeScene other = scene;
   other.axes[1][1] = -0.7;
   folder.write("p1.htg", htg_text(other, wavy, second));
-  EXPECT_NE(message_of([&] { read_mesh(pieces); }).find("its coordinates along y are not those of piece 'p0.htg'"),
+  EXPECT_NE(message_of([&] { read_mesh(pieces); }).find("its coordinates along y differ from those of piece 'p0.htg'"),
             std::string::npos);
 }
 
@@ -177,7 +177,7 @@ TEST(HyperTrees, ReportsUnsupportedContentInOneLine) {
   has(message_of([&] { read_mesh(plane); }), "its trees have 2 dimensions; give a three-dimensional grid");
   has(fault("BranchFactor=\"2\"", "BranchFactor=\"4\""), "divided by 4");
   has(fault("Dimensions=\"4 3 4\"", "Dimensions=\"4 3 5\""), "4 coordinates along z for 5 points");
-  has(fault("0.3 1 1.7 2.4", "0.3 1 1 2.4"), "coordinates that rise");
+  has(fault("0.3 1 1.7 2.4", "0.3 1 1 2.4"), "increasing coordinates");
   has(fault("0.3 1 1.7 2.4", "0.3 1 1.7 nan"), "XCoordinates");
   has(fault("0.3 1 1.7 2.4", "0.3 1"), "array 'XCoordinates' ends before its 4 numbers do");
   has(fault("Name=\"ZCoordinates\"", "Name=\"Z\""), "it has no array ZCoordinates");
@@ -186,7 +186,7 @@ TEST(HyperTrees, ReportsUnsupportedContentInOneLine) {
       "tree 2 belongs to cell 18, but the grid has 3 x 2 x 3 cells");
   has(fault("Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 2",
             "Name=\"TreeIds\" NumberOfComponents=\"1\" NumberOfTuples=\"18\" format=\"ascii\">0 1 1"),
-      "its trees do not fit its grid");
+      "its trees do not match its grid");
   has(fault("Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 0",
             "Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 1"),
       "according to its counts");

@@ -71,7 +71,8 @@ TEST(VolumeColors, AreRefusedUnlessAComponentOrTheLengthIsAskedFor) {
     test::expect_no_volume(file, "'samples' has colors of ");
     ReadOptions options;
     options.field = "samples";
-    test::expect_no_volume(file, "choose one with `field` samples:0 (red), or their length with samples:mag", options);
+    test::expect_no_volume(file, "choose one component with `field` samples:0 (red), or their length with samples:mag",
+                           options);
     options.field = "samples:1";
     EXPECT_GT(open_volume(file, options).range.low, 0);
     options.field = "samples:mag";
