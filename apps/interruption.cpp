@@ -38,9 +38,10 @@ extern "C" void on_interruption(int signal) {
 [[noreturn]] void end_by(int signal) {
   StatusLine::end_all();
   abandon_outputs();
-  Job::print_once(fmt::format("tessera: ended by {}; no output is half-written", signal == SIGINT    ? "Ctrl-C"
-                                                                                 : signal == SIGTERM ? "SIGTERM"
-                                                                                                     : "SIGHUP"));
+  Job::print_once(fmt::format("tessera: ended by {}; no incomplete output files are left", signal == SIGINT ? "Ctrl-C"
+                                                                                           : signal == SIGTERM
+                                                                                               ? "SIGTERM"
+                                                                                               : "SIGHUP"));
   std::signal(signal, SIG_DFL);
   ::kill(::getpid(), signal);
   for (;;) ::pause();

@@ -88,7 +88,8 @@ ExitCode run(int argc, char** argv, Job& job) {
 
   if (command != Trait::render) refuse_time_steps(words);
   if (words.word("input") == standard_stream) {
-    if (job.size() > 1) throw bad_input("standard input: only one process has it; give a file that all can open");
+    if (job.size() > 1)
+      throw bad_input("standard input: only one process can read it; give a file that all processes can open");
     words.set("input", spool_standard_input().string());
   }
   if (command == Trait::render) return render_words(words, job);
@@ -104,7 +105,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     const bool is_grid = draws_grids(words, first);
     if (words.given("check") && is_grid) {
       require_input(input);
-      throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
+      throw bad_input("--check: it is for meshes, but the input is a volume; leave it out");
     }
     ReadOptions options = read_options(words, is_grid);
     options.shape = !is_grid;  // as `render` does without options
@@ -177,7 +178,7 @@ void require_stack() {
   limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 8 * least);
   if (limit.rlim_cur < least || ::setrlimit(RLIMIT_STACK, &limit) != 0)
     throw Error(ErrorCode::system_failure, "stack",
-                std::to_string(limit.rlim_cur / 1024) + " KiB are too few, and this process may not have more",
+                std::to_string(limit.rlim_cur / 1024) + " KiB are too few, and this process is not allowed more",
                 "ulimit -s 8192");
 }
 
@@ -199,7 +200,7 @@ int main(int argc, char** argv) {
     require_stack();
     grow_stack();
     std::set_terminate(on_terminate);
-    constexpr auto remedy = "finished images stay, and the same command with --resume goes on from there";
+    constexpr auto remedy = "finished images are kept, and the same command with --resume continues from there";
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     job.emplace(tessera::JobReporting{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});
   } catch (...) {
@@ -210,7 +211,8 @@ int main(int argc, char** argv) {
     code = tessera::apps::run(argc, argv, *job);
     // A result that could not be written (a full disk behind `>`) is an error.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
+      throw Error(ErrorCode::system_failure,
+                  "standard output: it cannot be written; free disk space, or keep the reading program open");
   } catch (...) {
     job->fail(as_error());
   }

@@ -39,8 +39,9 @@ Error no_option(const CLI::App& command, const std::string& word, const std::str
   for (const CLI::Option* option : command.get_options())
     names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   const auto near = nearest_name(word.substr(word.find_first_not_of('-')), names);
-  return bad_input(near ? fmt::format("{}: is not an option of {}; did you mean --{}?", word, command.get_name(), *near)
-                        : fmt::format("{}: is not an option of {}; see {}", word, command.get_name(), help));
+  return bad_input(
+      near ? fmt::format("{}: it is not an option of {}; did you mean --{}?", word, command.get_name(), *near)
+           : fmt::format("{}: it is not an option of {}; see {}", word, command.get_name(), help));
 }
 
 CLI::Option* declare(const OptionRow& row, CLI::App& command) {
@@ -86,7 +87,7 @@ bool is_on(const OptionRow& row, const std::string& word) {
     if (const auto value = CLI::detail::to_flag_value(word); value == 1 || value == -1) return value == 1;
   } catch (const std::logic_error&) {  // the word is not a value of a flag
   }
-  throw bad_input(fmt::format("{}: takes no value; leave that out", shown_name(row)));
+  throw bad_input(fmt::format("{}: it takes no value; leave the value out", shown_name(row)));
 }
 
 OptionWords words_of(const CommandLine& line, Trait command) {
@@ -135,8 +136,8 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
     if (first == "serve" && !of.remaining().empty())
       throw bad_input(
-          fmt::format("arguments: serve shows one file, and '{}' is a second; give a series as a pattern of its names, "
-                      "like 'a_%d.vtu', or a .pvd or .series that lists them",
+          fmt::format("arguments: serve shows only one file, but '{}' is a second; give a series as a pattern of its "
+                      "names, like 'a_%d.vtu', or a .pvd or .series that lists them",
                       of.remaining().front()));
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }

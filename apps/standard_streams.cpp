@@ -36,7 +36,7 @@ std::filesystem::path spool_standard_input() {
   if (file < 0) {
     std::string name = (std::filesystem::temp_directory_path() / "tessera-XXXXXX").string();
     file = ::mkostemp(name.data(), O_CLOEXEC);
-    if (file < 0) fail("no file for it can be made in");
+    if (file < 0) fail("no file for its contents can be created in");
     ::unlink(name.c_str());
   }
   std::array<char, 1 << 16> bytes{};
@@ -70,7 +70,8 @@ void require_no_terminal(const char* option) {
 
 void write_standard_output(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
-    throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
+    throw Error(ErrorCode::system_failure,
+                "standard output: it cannot be written; free disk space, or keep the reading program open");
 }
 
 }  // namespace tessera::apps

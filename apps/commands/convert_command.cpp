@@ -33,7 +33,8 @@ std::optional<ConvertPieces> convert_pieces(const OptionWords& words) {
   const auto kind = words.choice("partition", {PartitionKind::curve, PartitionKind::file, PartitionKind::random});
   const auto count = words.count("pieces", 1, 100000);
   if (count) return ConvertPieces{*count, {.kind = kind.value_or(PartitionKind::curve)}};
-  if (kind && *kind != PartitionKind::curve) throw bad_input("--partition: needs --pieces; give their number too");
+  if (kind && *kind != PartitionKind::curve)
+    throw bad_input("--partition: it needs --pieces; give the number of pieces too");
   return std::nullopt;
 }
 
@@ -67,7 +68,7 @@ void convert_grid(const InputFile& input, const std::filesystem::path& output, c
                                 output.string(), output.extension().string()));
   check_output(output, input.path());
   if (!options.selection.clip.empty())
-    throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
+    throw bad_input("--clip: volumes are always written as a whole; leave --clip out here, and give it to render");
   StatusLine line(shows_progress(quiet));
   ReadOptions as_stored = options;
   as_stored.labels = false;

@@ -115,7 +115,7 @@ void print_finding(const char* name, const MeshCheck::Finding& finding, const st
 
 void print_check(const MeshCheck& check) {
   fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
-             check.clean() ? "every ray meets each place once"
+             check.clean() ? "every ray passes each point only once"
                            : "cells overlap, fold or do not match; images are wrong where cells overlap");
   print_finding("overlapping pairs", check.overlaps,
                 fmt::format("{}, {} cells", check.more_overlaps ? " or more" : "", check.overlapping_cells), true);
@@ -160,8 +160,8 @@ Opened open_series(const std::filesystem::path& input, ReadOptions options, Stat
   const std::vector<TimeStep> series = read_time_series(input);
   const std::optional<std::size_t> requested = std::exchange(options.time_step, std::nullopt);
   if (requested && *requested >= series.size())
-    throw bad_input(fmt::format("{}: there is no time step {}, it has {}; count from 0", input.string(), *requested,
-                                series.size()));
+    throw bad_input(fmt::format("{}: there is no time step {}, it has only {}; count from 0", input.string(),
+                                *requested, series.size()));
   Opened opened;
   opened.steps = {series.size(), requested.value_or(0), {}, true, {}};
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {

@@ -24,7 +24,7 @@ server::ServeOptions serve_options(const OptionWords& words) {
   options.network.certificate = words.word("tls-certificate");
   options.network.key = words.word("tls-key");
   if (words.given("tls-certificate") != words.given("tls-key"))
-    throw bad_input("--tls-certificate: it needs --tls-key, and the other way round; give both, or none");
+    throw bad_input("--tls-certificate: it needs --tls-key, and --tls-key needs it; give both or neither");
   options.allowed_hosts = words.words("allow-host");
   assign(options.renderer.latency_ms, words.positive("latency"));
   assign(options.renderer.threads, words.count("threads", 1, 1024));
@@ -56,7 +56,7 @@ void serve(const OptionWords& words, Job& job) {
   };
   events.rank_lost = [] {
     abandon_outputs();
-    Job::print_once("tessera: a rank is lost, or was ended from outside; start the server again");
+    Job::print_once("tessera: a rank was lost or ended from outside; start the server again");
     std::_Exit(static_cast<int>(ErrorCode::system_failure));
   };
   server::serve(options, *reader, job, events);

@@ -315,7 +315,7 @@ class RenderSceneReader final : public server::SceneReader {
     words.set("quiet", "true");
     const std::string& step = words.word("time-step");
     if (step.find_first_not_of("0123456789") != std::string::npos)
-      throw bad_input(fmt::format("--time-step: '{}' is not a step; give one, counted from 0", step));
+      throw bad_input(fmt::format("--time-step: '{}' is not a time step; give a number, counted from 0", step));
     auto parsed = std::make_shared<ParsedWords>();
     parsed->options = render_options(words, is_grid_);
     const RenderOptions& options = parsed->options;

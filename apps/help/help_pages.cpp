@@ -145,7 +145,7 @@ std::string help_page(const CommandRow* command, bool all) {
     for (const CommandRow& each : command_rows()) add_entry(page, std::string(each.name), each.description);
     page += "\nOptions:\n";
     add_entry(page, "--version", "print the version, the commit and the build options");
-    return page + "\n`tessera help COMMAND` has more.\n";
+    return page + "\n`tessera help COMMAND` describes each command.\n";
   }
   const bool is_render = command->trait == Trait::render;
   all = all || !is_render;

@@ -125,7 +125,7 @@ class SeriesExamination {
     if (without == examined_.end()) return;
     throw bad_input(
         fmt::format("time step {} has no field '{}', which time step {} shows; choose steps that have it with "
-                    "--time-step FIRST:LAST, or with --field a field of all steps",
+                    "--time-step FIRST:LAST, or a field that all steps have with --field",
                     without->step, with->field, with->step));
   }
 

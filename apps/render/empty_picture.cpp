@@ -15,7 +15,8 @@
 namespace tessera::apps {
 namespace {
 
-constexpr const char* no_volume = "its cells have no volume that a pixel could show; give a mesh that has";
+constexpr const char* no_volume =
+    "its cells have no volume that a pixel could show; give a mesh whose cells have volume";
 
 bool emits(const RenderOptions& options) { return options.settings.emission == Emission::independent; }
 
@@ -155,8 +156,8 @@ std::string words_of(const std::vector<std::string>& remedies) {
 
 std::string advice_on_clear(const std::array<double, 2>& range, const FinishedRun& run) {
   const auto knots = run.function.knots();
-  const std::string why =
-      fmt::format("the transfer function is clear over all of its values, {:.6g} to {:.6g}", range[0], range[1]);
+  const std::string why = fmt::format(
+      "the transfer function is transparent over all values of the field, {:.6g} to {:.6g}", range[0], range[1]);
   if (knots.empty() || !run.function.visible(knots.front().value, knots.back().value, emits(run.options)))
     return why + "; give it opacity";
   return fmt::format("{}; --range {:.6g},{:.6g} stretches it over them", why, range[0], range[1]);
@@ -257,7 +258,8 @@ std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {
     return fmt::format(
         "no ray meets a value that the transfer function shows; {}, or give --range {:.6g},{:.6g}, which stretches it "
         "over the field's values",
-        is_part ? "see the whole without --zoom and --camera" : "give a larger --size", first.range[0], first.range[1]);
+        is_part ? "leave --zoom and --camera out to see the whole" : "give a larger --size", first.range[0],
+        first.range[1]);
   }
   Tries tries(run, run.frames[first.frame]);
   std::vector<std::string> remedies;

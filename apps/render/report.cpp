@@ -279,11 +279,11 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
                         statistics.instruction_set, time_words(record.frame_ms.front()));
     if (!options.settings.mesh.device.backends.empty())
       line += fmt::format("; composited by {}", statistics.composited_on);
-    if (statistics.overlapping) line += "; ray segments exchanged, for cells of several ranks overlap";
+    if (statistics.overlapping) line += "; ray segments exchanged, because cells of several ranks overlap";
   }
   if (const std::size_t steps = frames.back().step + 1; is_series(options.plan))
     line += first.camera ? fmt::format("; {} time steps", steps)
-                         : fmt::format("; view of the first of {} time steps, {}, for all", steps,
+                         : fmt::format("; the view of the first of {} time steps, {}, is used for all", steps,
                                        frames.front().data.files.front().string());
   return line;
 }

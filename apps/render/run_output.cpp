@@ -95,7 +95,7 @@ ExitCode RunOutput::finish() {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options_.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
   } else if (!options_.quiet) {
-    print_lines(fmt::format("{}: all {} frames are there already, nothing rendered", options_.input().string(),
+    print_lines(fmt::format("{}: all {} frames exist already, so nothing was rendered", options_.input().string(),
                             frames_.size()));
   }
   if (options_.report_to_standard_output)

@@ -69,8 +69,8 @@ void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   step_ = frame.step;
   if (first_ && first_->shows_shape && !data_->shows_shape())
     throw bad_input(
-        fmt::format("{}: time step {} shows the field '{}', which is constant in the steps that were examined first, "
-                    "and earlier steps show the shape; choose it with --field, or steps with --time-step FIRST:LAST",
+        fmt::format("{}: time step {} shows the field '{}', which is constant in the steps examined first, so that "
+                    "earlier steps show the shape; choose the field with --field, or steps with --time-step FIRST:LAST",
                     file.string(), step_, data_->field_name()));
   if (const auto time = data_->time(); time && !frame.data.has_time)
     for (FilmFrame& each : frames_)
@@ -103,7 +103,8 @@ void ShownStep::choose_for_all_steps() {
   there = job_.broadcast(writing_rank_, std::move(there));
   for (std::size_t k = steps.size(); k-- > 1;)
     if (there[k] == std::byte{0}) {
-      output_.warn(fmt::format("time step {} no longer exists: field and colors are chosen by other steps", steps[k]));
+      output_.warn(
+          fmt::format("time step {} no longer exists: field and colors are chosen from other steps", steps[k]));
       steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(k));
     }
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
@@ -188,8 +189,8 @@ void ShownStep::warn_at_end(const EmptyPictures& empty) const {
     const auto [lowest, highest] = whole_range_;
     if (std::max(low - lowest, highest - high) > 0.1 * (high - low))
       output_.warn(
-          fmt::format("values of all time steps are from {:.6g} to {:.6g}, but the colours span {:.6g} to {:.6g}; "
-                      "--range {:.6g},{:.6g} spans all",
+          fmt::format("the values of all time steps range from {:.6g} to {:.6g}, but the colours span {:.6g} to "
+                      "{:.6g}; --range {:.6g},{:.6g} spans all",
                       lowest, highest, low, high, lowest, highest));
   }
   const std::string warning = empty.warning(

@@ -242,7 +242,8 @@ TEST(Interruption, AtATerminalControlCTakesTheLineOfProgressAway) {
   ASSERT_TRUE(run.shows("rendering 16384x16384")) << run.shown();
   run.press_control_c();
   EXPECT_EQ(run.wait(), 130);
-  EXPECT_TRUE(run.shown().ends_with("\r\x1b[Ktessera: ended by Ctrl-C; no output is half-written\r\n")) << run.shown();
+  EXPECT_TRUE(run.shown().ends_with("\r\x1b[Ktessera: ended by Ctrl-C; no incomplete output files are left\r\n"))
+      << run.shown();
   EXPECT_TRUE(mark.is_gone());
   EXPECT_EQ(folder.names(), before);
 }

@@ -112,7 +112,7 @@ TEST_F(Mpirun, CellsThatOverlapHaveTheBytesOfOneProcess) {
       words.emplace_back(more);
     const Outcome outcome = mpirun(3, words);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("ray segments exchanged, for cells of several ranks overlap"), std::string::npos)
+    EXPECT_NE(outcome.err.find("ray segments exchanged, because cells of several ranks overlap"), std::string::npos)
         << outcome.err;
     for (int n = 0; n < 4; ++n)
       EXPECT_EQ(contents(folder / fmt::format("ranks_{}.pfm", n)), contents(folder / fmt::format("one_{}.pfm", n)))

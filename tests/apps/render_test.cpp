@@ -182,7 +182,7 @@ TEST(Render, ResumeRendersOnlyMissingFrames) {
   EXPECT_EQ(contents(folder / "f_1.pfm"), middle);
   const auto again = tessera(arguments);
   EXPECT_EQ(again.status, 0);
-  EXPECT_NE(again.err.find("all 3 frames are there already"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("all 3 frames exist already"), std::string::npos) << again.err;
 }
 
 TEST(Render, ATransferFunctionFileIsUsedAsItIsUnlessRescaled) {

@@ -76,7 +76,7 @@ TEST_F(Series, EachFrameIsThePictureOfItsMesh) {
 TEST_F(Series, TheViewIsTheFirstStepsForAll) {
   const auto run = tessera(arguments({pattern}, "f_%d.pfm", {"--report", folder / "report.json"}));
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("; view of the first of 3 time steps, "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("; the view of the first of 3 time steps, "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("note: field f and its colors are chosen by time steps 0, 1 and 2 of 0 to 2"),
             std::string::npos);
   const auto report = nlohmann::json::parse(contents(folder / "report.json"));
@@ -109,7 +109,7 @@ TEST_F(Series, ResumeReadsNoMeshWhoseFramesExist) {
   for (const std::string& mesh : meshes) std::filesystem::remove(mesh);
   const auto again = tessera(resume);
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_NE(again.err.find("all 3 frames are there already"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("all 3 frames exist already"), std::string::npos) << again.err;
 }
 
 TEST_F(Series, PartsOfATimestepAreOneMesh) {

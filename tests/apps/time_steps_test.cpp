@@ -91,7 +91,7 @@ TEST_F(TimeSteps, AStepOfASeriesIsChosenTheSameWay) {
   EXPECT_EQ(tessera({"render", list, "-o", folder / "s.png", "--size", "8x8", "--time-step", "1"}).status, 0);
   const Outcome beyond = tessera({"render", list, "-o", folder / "s.png", "--size", "8x8", "--time-step", "2"});
   EXPECT_EQ(beyond.status, 2);
-  EXPECT_NE(beyond.err.find("there is no time step 2, it has 2"), std::string::npos) << beyond.err;
+  EXPECT_NE(beyond.err.find("there is no time step 2, it has only 2"), std::string::npos) << beyond.err;
 }
 
 }  // namespace
