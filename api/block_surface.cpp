@@ -16,7 +16,7 @@ inline namespace v0_1 {
 
 TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, const std::string& block,
                                 const ReadOptions& options) {
-  if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+  if (files.empty()) throw scene::bad_input("input: no file was given; give one");
   ReadOptions read = options;
   read.blocks = {block};
   read.selection = {};

@@ -50,16 +50,19 @@ const MeshCounts& Dataset::mesh_counts() const { return state_->counts; }
 const HigherOrderCells& Dataset::higher_order_cells() const { return state_->higher_order; }
 
 MeshArrays Dataset::mesh_arrays() const {
-  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which has no tets; ask meshes for them");
+  if (is_grid())
+    throw scene::bad_input(state_->source + ": it is a grid, which has no tets; request them only from meshes");
   return frame::arrays_of(state_->mesh, state_->field_name, state_);
 }
 
 const GridGeometry& Dataset::grid_geometry() const {
-  if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no lattice; ask grids for it");
+  if (is_mesh())
+    throw scene::bad_input(state_->source + ": it is a mesh, which has no lattice; request it only from grids");
   return state_->samples->geometry();
 }
 SampleType Dataset::sample_type() const {
-  if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no samples; ask grids for it");
+  if (is_mesh())
+    throw scene::bad_input(state_->source + ": it is a mesh, which has no samples; request them only from grids");
   return state_->samples->grid().type;
 }
 double Dataset::scale() const { return is_mesh() ? 1 : state_->samples->grid().scale; }
@@ -87,7 +90,7 @@ LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_pre
 }
 
 MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
-  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, and only meshes are checked; give a mesh");
+  if (is_grid()) throw scene::bad_input(state_->source + ": it is a grid, but only meshes can be checked; give a mesh");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
   return api::check_mesh(state_->mesh, progress);

@@ -39,7 +39,7 @@ Dataset Dataset::of(const GridArrays& arrays) {
   scene::Grid grid;
   grid.geometry = arrays.geometry;
   const std::optional<SampleType> type = scene::sample_type_of(arrays.samples.type());
-  if (!type) throw scene::bad_input("grid: samples are 64-bit integers; give float64");
+  if (!type) throw scene::bad_input("grid: 64-bit integer samples are not supported; give float64");
   grid.type = *type;
   grid.scale = arrays.scale, grid.shift = arrays.shift;
   grid.field_name = arrays.field_name;

@@ -42,13 +42,13 @@ void check_options(const std::filesystem::path& file, const ReadOptions& options
         throw scene::bad_input(
             fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
   if (!is_grid && options.describes_raw())
-    throw scene::bad_input(
-        fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
-                    file.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are only for .raw files; leave them out",
+        file.string()));
   const auto refuse = [&](bool is_given, const char* setting) {
     if (is_grid && is_given)
       throw scene::bad_input(
-          fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
+          fmt::format("{}: `{}` is for meshes, but this is a grid; leave it out", file.string(), setting));
   };
   refuse(options.smooth, "smooth");
   refuse(options.warp.has_value(), "warp");
@@ -105,10 +105,10 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
     range = state->ranges->range;
     if (range.empty())
       throw scene::bad_input(fmt::format(
-          "{}: no sample's value is in `threshold`, nothing is left to render; give a wider range", file.string()));
+          "{}: no sample's value is in `threshold`, so nothing is left to render; give a wider range", file.string()));
     if (range.blanks > 0)
       volume.notes.push_back(
-          fmt::format("{} samples are blank or not in `threshold`: voxels that have one are left out",
+          fmt::format("{} samples are blank or not in `threshold`: voxels with such a sample are left out",
                       std::exchange(range.blanks, 0)));
   }
   io::set_range(volume, file, range);
@@ -192,7 +192,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
                       const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
   const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   const auto open = [&] {
-    if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+    if (files.empty()) throw scene::bad_input("input: no file was given; give one");
     for (const auto& file : files) system::note_read(file);
     api::require_same_files(*transport);  // must come first: the collective calls below depend on the files
     if (!identified) identified.emplace(files.front());

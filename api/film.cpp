@@ -29,9 +29,10 @@ void check_fits_memory(ImageSize size) {
   if (needed < (64 << 20)) return;
   const auto free = static_cast<double>(system::available_memory());
   if (needed > free)
-    throw Error(ErrorCode::system_failure,
-                fmt::format("`size`: a {}x{} image takes {:.1f} GiB, and {:.1f} are free here; make it smaller",
-                            size.width, size.height, needed / (1 << 30), free / (1 << 30)));
+    throw Error(
+        ErrorCode::system_failure,
+        fmt::format("`size`: a {}x{} image takes {:.1f} GiB, but only {:.1f} GiB are free; make the image smaller",
+                    size.width, size.height, needed / (1 << 30), free / (1 << 30)));
 }
 
 std::vector<FilmFrame> views(const FilmPlan& plan) {
@@ -50,7 +51,7 @@ std::vector<FilmFrame> views(const FilmPlan& plan) {
   }
   if (plan.orbit > 0) {
     if (frames.size() != 1)
-      throw bad_input(fmt::format("{}: `orbit` turns one view, this holds {}; give one",
+      throw bad_input(fmt::format("{}: `orbit` needs exactly one view, but this file has {}; give one",
                                   is_json_text(plan.cameras.string()) ? "`camera`" : plan.cameras.string(),
                                   frames.size()));
     const FilmFrame first = frames.front();
@@ -67,8 +68,8 @@ std::vector<TimeStep> in_range(std::vector<TimeStep> steps, const FilmPlan& plan
   const auto [first, last_wished, stride] = *plan.steps;
   const std::size_t last = last_wished.value_or(steps.size() - 1);
   if (std::max(first, last) >= steps.size())
-    throw bad_input(fmt::format("{}: there is no time step {}, it has {}; count from 0", plan.inputs.front().string(),
-                                std::max(first, last), steps.size()));
+    throw bad_input(fmt::format("{}: there is no time step {}, it has only {}; count from 0",
+                                plan.inputs.front().string(), std::max(first, last), steps.size()));
   std::vector<TimeStep> chosen;
   for (std::size_t step = first; step <= last; step += std::max<std::size_t>(stride, 1))
     chosen.push_back(std::move(steps[step]));
@@ -85,14 +86,14 @@ std::vector<TimeStep> steps_of_file(const FilmPlan& plan) {
 }
 
 std::vector<TimeStep> steps(const FilmPlan& plan) {
-  if (plan.inputs.empty()) throw bad_input("input: no file is named; name one");
+  if (plan.inputs.empty()) throw bad_input("input: no file was given; give one");
   if (takes_steps_of_file(plan)) return steps_of_file(plan);
   if (plan.inputs.size() == 1 && is_time_series(plan.inputs.front())) return read_time_series(plan.inputs.front());
   std::vector<TimeStep> steps;
   for (const auto& input : plan.inputs) steps.push_back({static_cast<double>(steps.size()), {input}});
   for (const auto& step : steps)
     if (steps.size() > 1 && is_time_series(step.files.front()))
-      throw bad_input(fmt::format("{}: is a time series in a list of meshes; give it alone, or meshes only",
+      throw bad_input(fmt::format("{}: it is a time series in a list of meshes; give it alone, or give only meshes",
                                   step.files.front().string()));
   return steps;
 }
@@ -126,7 +127,7 @@ std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
       const auto numbered = numbered_name(output.string(), frame.number);
       frame.outputs.emplace_back(numbered.value_or(output.string()));
       if (!numbered && frames.size() > 1)
-        throw bad_input(fmt::format("{}: {} frames need a numbered name; write {}_%04d{}", output.string(),
+        throw bad_input(fmt::format("{}: the names of {} frames need numbers; write {}_%04d{}", output.string(),
                                     frames.size(), (output.parent_path() / output.stem()).string(),
                                     output.extension().string()));
     }
@@ -165,9 +166,9 @@ void FilmFrame::require_still_there() const {
   for (const auto& file : data.files) {
     std::error_code unreadable;  // for an unreadable file, reading reports the reason
     if (!std::filesystem::exists(file, unreadable) && !unreadable)
-      throw Error(
-          ErrorCode::system_failure,
-          fmt::format("{}: was there when the run began and is gone; bring it back and use `resume`", file.string()));
+      throw Error(ErrorCode::system_failure,
+                  fmt::format("{}: it existed when the run began, but no longer does; restore it and use `resume`",
+                              file.string()));
   }
 }
 
@@ -220,7 +221,7 @@ void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::
     if (is_new)
       folder->second = std::filesystem::weakly_canonical(std::filesystem::absolute(output).parent_path(), unknown);
     if (!names.insert(folder->second / output.filename()).second)
-      throw bad_input(fmt::format("{}: is named twice as an output; choose two names", output.string()));
+      throw bad_input(fmt::format("{}: it is given twice as an output; choose two names", output.string()));
     for (const auto& input : inputs) check_not_input(output, input);
   };
 

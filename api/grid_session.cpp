@@ -94,7 +94,7 @@ class GridByRays final : public Session::State {
   [[nodiscard]] BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
                                                  const TransferFunction& function) const override {
     if (!keeps_cost_ || !renderer_)
-      throw scene::bad_input("balance: the last frame did not keep its cost; ask for it in the frame's settings");
+      throw scene::bad_input("balance: the last frame did not record its cost; request it in the frame's settings");
     const scene::GridGeometry& geometry = data().samples->geometry();
     if (sorts_last()) {
       BalancePictures of_parts{

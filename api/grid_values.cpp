@@ -53,7 +53,7 @@ void note_byte_order(io::VolumeFile& volume, bool big_endian, const scene::Value
   if (volume.format != "raw samples" || !is_float(volume.source->grid().type) || range.empty() || most == 0 ||
       (most > 1e-30 && most < 1e30))
     return;
-  volume.notes.push_back(fmt::format("its values are as those in the other order of bytes are: try `endian` {}",
+  volume.notes.push_back(fmt::format("its values look as if they were in the other byte order: try `endian` {}",
                                      big_endian ? "little" : "big"));
 }
 
@@ -66,7 +66,8 @@ std::vector<double> take_labels(const std::filesystem::path& file, std::optional
   if (volume.source->geometry().association == Association::point) {
     volume.source = std::make_unique<scene::LabelSource>(std::move(volume.source), file.string());
     volume.notes.push_back(
-        fmt::format("values are labels{}: each sample fills its voxel, none is between two (`labels` off interpolates)",
+        fmt::format("values are labels{}: each sample fills its voxel, without interpolation between samples (`labels` "
+                    "off interpolates)",
                     found.values.empty() ? "" : fmt::format(", {} of them", found.values.size())));
   }
   return std::move(found.values);

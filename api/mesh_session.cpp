@@ -96,13 +96,14 @@ class MeshOnRanks final : public Session::State {
     check_exchange(distributed_.exchange);
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())
-      throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
-                                         state.source, state.ranks, transport_->size()));
+      throw scene::bad_input(
+          fmt::format("{}: it was opened by {} ranks, but the session has {}; give both the same communicator",
+                      state.source, state.ranks, transport_->size()));
     if (!projects(transport_->rank()) && state.ranks > 1 && !state.mesh.tets.empty()) {
-      const Error error = scene::bad_input(
-          fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
-                      "`compositors`",
-                      state.source, transport_->rank()));
+      const Error error =
+          scene::bad_input(fmt::format("{}: rank {} has cells, but is not a projector; give data set and session the "
+                                       "same `projectors` and `compositors`",
+                                       state.source, transport_->rank()));
       transport_->fail(error);  // other ranks may not have found the error
       throw error;
     }
@@ -190,8 +191,8 @@ class MeshOnRanks final : public Session::State {
   /// Throws if the mesh has too many tets for raw segments, which are sent with the index of their tet in 32 bits.
   void check_exchange(Exchange exchange) const {
     if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
-      throw scene::bad_input(
-          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", data().facts.tets));
+      throw scene::bad_input(fmt::format(
+          "`exchange` segments: {} tets are more than 2^32, which only runs support; use runs", data().facts.tets));
   }
 
   /// The tets that this rank projects: the part that the rank has opened or, if every rank has the whole mesh, the

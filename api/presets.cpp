@@ -14,7 +14,7 @@ TransferFunction preset_function(std::string_view name) { return colormaps::pres
 std::vector<std::string> preset_opacity_names() { return colormaps::preset_opacity_names(); }
 
 std::vector<glm::dvec3> preset_colors(std::string_view name, std::size_t count) {
-  if (count < 2) throw bad_input("preset: fewer than two colours show no range; ask for two or more");
+  if (count < 2) throw bad_input("preset: fewer than two colours do not show a range; request two or more");
   colormaps::TransferFunctionOptions options;
   options.display_colors = true;
   const TransferFunction function = colormaps::preset(name, options).function;

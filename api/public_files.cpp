@@ -69,7 +69,8 @@ Image read_image(const std::filesystem::path& file) { return io::read_image(file
 TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(io::identify(file)); }
 
 void write_deep_image(const DeepImage& image, const std::filesystem::path& file) {
-  if (file.extension() != ".exr") throw scene::bad_input(file.string() + ": deep images are OpenEXR; name it .exr");
+  if (file.extension() != ".exr")
+    throw scene::bad_input(file.string() + ": deep images are OpenEXR files; give a name that ends in .exr");
   io::write_deep_exr(image, file);
 }
 
@@ -96,14 +97,15 @@ namespace {
 void write_tets_of(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
   if (file.extension() == ".tets") return io::write_tets(mesh, file);
   if (file.extension() == ".vtu") return io::write_vtu(mesh, file);
-  throw scene::bad_input(file.string() + ": is not a name of a mesh that can be written; choose .vtu or .tets");
+  throw scene::bad_input(file.string() +
+                         ": its name is not that of a mesh format that can be written; choose .vtu or .tets");
 }
 
 }  // namespace
 
 void write_mesh(const Dataset& mesh, const std::filesystem::path& file) {
   const Dataset::State& state = StateAccess::of(mesh);
-  if (mesh.is_grid()) throw scene::bad_input(state.source + ": is a grid, not a mesh; use write_grid");
+  if (mesh.is_grid()) throw scene::bad_input(state.source + ": it is a grid, not a mesh; use write_grid");
   if (state.ranks > 1)
     throw scene::bad_input(state.source + ": this rank has a part of the mesh; open it on one rank to write it");
   scene::TetMeshView view = state.mesh;
@@ -144,7 +146,8 @@ void check_mesh_output(const std::filesystem::path& file, const InputFile* input
                                          extension.string()));
     return check_output(file, read);
   }
-  if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
+  if (extension != ".pvtu")
+    throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; give the name of a .pvtu", file.string()));
   std::vector<std::filesystem::path> inputs = {read};
   if (found != nullptr && io::readable_in_parts(found->file, {})) {
     const auto parts = io::files_of_parts(found->file);
@@ -164,15 +167,16 @@ namespace {
 
 void check_grid_name(const std::filesystem::path& file) {
   if (!io::is_volume_output(file))
-    throw scene::bad_input(file.string() +
-                           ": is not a name of a grid that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
+    throw scene::bad_input(
+        file.string() +
+        ": its name is not that of a grid format that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
 }
 
 }  // namespace
 
 void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
   const Dataset::State& state = StateAccess::of(grid);
-  if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, not a grid; use write_mesh");
+  if (grid.is_mesh()) throw scene::bad_input(state.source + ": it is a mesh, not a grid; use write_mesh");
   check_grid_name(file);
   // Labels are written as they were in the file, as point data.
   const auto* const labels = dynamic_cast<const scene::LabelSource*>(state.samples.get());
@@ -187,7 +191,8 @@ void write_grid(const SampleSource& grid, const std::filesystem::path& file, int
 bool is_grid_output(const std::filesystem::path& file) { return io::is_volume_output(file); }
 
 SampleType written_type(const Dataset& grid) {
-  if (grid.is_mesh()) throw scene::bad_input(grid.source() + ": is a mesh, which has no samples; ask grids for it");
+  if (grid.is_mesh())
+    throw scene::bad_input(grid.source() + ": it is a mesh, which has no samples; request them only from grids");
   return io::written_type(StateAccess::of(grid).samples->grid());
 }
 

@@ -66,7 +66,8 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
 Dataset Dataset::selected(const Selection& selection) const {
   validate(selection);
   if (is_grid())
-    throw scene::bad_input(state_->source + ": is a grid, whose cells cannot be selected; select cells of meshes");
+    throw scene::bad_input(state_->source +
+                           ": it is a grid, whose cells cannot be selected; select only cells of meshes");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source +
                            ": this rank has a part of the mesh; open it with ReadOptions::selection instead");
@@ -84,7 +85,8 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   if (data.ranks == 1 && data.clip.empty()) return {data.mesh, {}, data.mesh, nullptr};
   if (data.uncut) return {data.uncut->mesh, data.clip, data.mesh, data.uncut};
   if (data.files.empty())
-    throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
+    throw scene::bad_input(
+        "verify: this rank has only a part of the mesh, and no file contains the whole mesh; verify on one rank");
   const auto pieces = frame::identify_pieces(data.files, frame::identify_input(data.files.front()));
   const ReadOptions& options = data.options;
   cells::MeshFile file = scene::with_threads(options.threads, [&] { return io::read_mesh(pieces, options); });

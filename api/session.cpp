@@ -68,7 +68,7 @@ void check_view(const View& view) {
 void check_reach(const View& view, const Box& bounds) {
   if (!bounds.empty() && !has_coordinates(view, bounds))
     throw scene::bad_input(
-        "view: data and camera are so far apart that places in the image are not numbers; move the camera nearer");
+        "view: data and camera are too far apart for positions in the image to be computed; move the camera nearer");
 }
 
 /// Returns the single frame of a film of one frame.
@@ -118,9 +118,9 @@ DataKind kind_of(const Dataset& data) { return data.is_grid() ? DataKind::grid :
 
 void check_data(const Settings& settings, const Dataset& data) {
   if (!settings.surfaces.iso.empty() && data.association() == Association::cell)
-    throw scene::bad_input(
-        fmt::format("`iso`: the field has one value a cell, so no iso-surfaces; use {}a `field` with values at points",
-                    data.is_mesh() ? "`smooth`, or " : ""));
+    throw scene::bad_input(fmt::format(
+        "`iso`: the field has one value per cell, so it has no iso-surfaces; use {}a `field` with values at points",
+        data.is_mesh() ? "`smooth`, or " : ""));
   if (data.is_grid() && data.grid_geometry().rectilinear() && volume::in_steps(settings.integrator.kind))
     throw scene::bad_input("`integrator`: a rectilinear grid is not rendered in steps; use auto or exact");
 }
@@ -177,7 +177,8 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
                              std::size_t count) const {
   check_view(view);
   if (frame.image.size != view.size)
-    throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
+    throw scene::bad_input(
+        "verify: the frame's size differs from this view's; give the view with which it was rendered");
   const api::Layers layers{frame.layers, frame.peel};
   const Dataset::State& data = StateAccess::of(dataset());
   if (dataset().is_grid())
@@ -188,7 +189,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {
-  throw scene::bad_input("balance: it is drawn for grids only, and the data set is a mesh; leave it out");
+  throw scene::bad_input("balance: it is drawn only for grids, but the data set is a mesh; leave it out");
 }
 
 BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View& view,

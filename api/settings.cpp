@@ -37,13 +37,14 @@ void require_range(const char* setting, Number value, Number least, Number most,
 
 void check_shading(const Shading& shading, Emission emission) {
   if (emission == Emission::independent)
-    throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
+    throw scene::bad_input(
+        "`shade`: shading needs emission that is proportional to extinction; leave one of the two out");
   const double length = glm::length(shading.to_light);
   if (!(length > 0) || !std::isfinite(length))
     throw scene::bad_input("`light`: the direction to the light has no length; give the direction towards the light");
   for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess})
     if (!(part >= 0) || !std::isfinite(part))
-      throw scene::bad_input("`shade`: the parts of the light must be 0 or more, and finite");
+      throw scene::bad_input("`shade`: the components of the lighting must be finite and 0 or more");
 }
 
 void check_integrator_of_mesh(const Integrator& integrator, Emission emission) {
@@ -86,12 +87,12 @@ void check_mesh(const Settings& settings) {
 void check_grid(const Settings& settings) {
   const IntegratorKind kind = settings.integrator.kind;
   if (settings.surfaces.has_faces())
-    throw scene::bad_input(fmt::format("{}: is for meshes, and the data set is a grid; leave it out",
+    throw scene::bad_input(fmt::format("{}: it is for meshes, but the data set is a grid; leave it out",
                                        frame::surface_word(settings.surfaces)));
   if (kind == IntegratorKind::partial)
-    throw scene::bad_input("`integrator` partial: is for meshes, and the data set is a grid; use automatic or exact");
+    throw scene::bad_input("`integrator` partial: it is for meshes, but the data set is a grid; use auto or exact");
   if (settings.mesh.rasterizer != Rasterizer::planes)
-    throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
+    throw scene::bad_input("`rasterizer`: it is for meshes, but the data set is a grid; leave it out");
   require_range("brick_size", settings.grid.brick_size, 2, 1 << 16, "2 to 65536 voxels");
   if (!(settings.grid.step > 0) || !std::isfinite(settings.grid.step))
     throw scene::bad_input(fmt::format("`step` {}: it must be positive, in voxels", settings.grid.step));
@@ -104,7 +105,7 @@ void check_grid(const Settings& settings) {
     throw scene::bad_input("`iso`: iso-surfaces need the exact or auto method; leave one of the two out");
   if (kind == IntegratorKind::preintegrated && settings.emission == Emission::independent)
     throw scene::bad_input(
-        "`integrator`: pre-integration needs emission in proportion to extinction; use sampled or exact");
+        "`integrator`: pre-integration needs emission that is proportional to extinction; use sampled or exact");
   if (kind == IntegratorKind::preintegrated && settings.ranks.distribution == Distribution::sort_last)
     throw scene::bad_input(
         "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
@@ -135,15 +136,15 @@ void validate(const FrameSettings& frame, const Settings& settings, DataKind dat
   const bool exact = kind == IntegratorKind::exact || kind == IntegratorKind::automatic;
   if (data == DataKind::grid && !exact)
     throw scene::bad_input(fmt::format(
-        "{}: steps along rays give light other than that of their parts; set `integrator` auto or exact", what));
+        "{}: the light of a step along a ray differs from that of its parts; set `integrator` auto or exact", what));
   if (data == DataKind::grid && settings.grid.shading && !frame.peel)
-    throw scene::bad_input("deep image: it is not shaded; leave `shade` out");
+    throw scene::bad_input("deep image: shading is not supported; leave `shade` out");
   if (data == DataKind::mesh && settings.mesh.rasterizer == Rasterizer::scanline)
     throw scene::bad_input(
         fmt::format("{}: `rasterizer` scanline leaves gaps and overlaps in depth; use planes", what));
   if (data == DataKind::mesh && !exact)
     throw scene::bad_input(fmt::format(
-        "{}: `integrator` {} gives a segment other light than its parts; use exact or auto", what,
+        "{}: with `integrator` {}, the light of a segment differs from that of its parts; use exact or auto", what,
         integrals::SegmentIntegrator(TransferFunction({Knot{}}), settings.integrator, settings.emission).name()));
 }
 

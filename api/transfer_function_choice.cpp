@@ -66,8 +66,9 @@ TransferFunction over_values(const TransferFunction& logarithmic) {
 double smallest_positive(const Dataset::State& data) {
   const auto [low, high] = data.facts_of_all().scalar_range;
   if (!(high > 0))
-    throw scene::bad_input(fmt::format("{}: `log`: the field {} has no positive value, it ends at {:.6g}; leave it out",
-                                       data.source, data.field_name, high));
+    throw scene::bad_input(
+        fmt::format("{}: `log`: the field {} has no positive value, its largest is {:.6g}; leave `log` out",
+                    data.source, data.field_name, high));
   if (low > 0) return low;
   double least = high;
   const scene::FieldSamples& found = data.field_samples();
@@ -87,11 +88,11 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
   const double least = smallest_positive(data);
   std::vector<std::string> warnings;
   if (data.facts_of_all().scalar_range[0] <= 0)
-    warnings.push_back(
-        fmt::format("values of 0 and below count as {:.6g}, the smallest positive one found, for `log`", least));
+    warnings.push_back(fmt::format(
+        "values of 0 and below are treated as {:.6g}, the smallest positive value found, for `log`", least));
   std::array<double, 2> span = options.range.value_or(std::array{least, data.facts_of_all().scalar_range[1]});
   if (!(span[1] > 0))
-    throw scene::bad_input(fmt::format("`range` ends at {}, and `log` needs a positive value; give one", span[1]));
+    throw scene::bad_input(fmt::format("`range` ends at {}, but `log` needs a positive value; give one", span[1]));
   span[0] = span[0] > 0 ? span[0] : std::min(least, span[1]);
   const auto exponent = [&](double value) { return std::log10(std::max(value, least)); };
   loading.field_range = {exponent(data.facts_of_all().scalar_range[0]), exponent(data.facts_of_all().scalar_range[1])};
@@ -121,15 +122,15 @@ std::string remedy_for_clear(const LoadedTransferFunction& loaded, const Transfe
   if (options.opacity_scale == 0) return "`opacity_scale` is 0; give a number above 0";
   const auto knots = loaded.function.knots();
   if (!loaded.function.visible(knots.front().value, knots.back().value, emits)) {
-    if (!options.opacity_points.empty()) return "`opacity_points` are all 0; give one of them an opacity";
+    if (!options.opacity_points.empty()) return "`opacity_points` are all 0; give at least one an opacity above 0";
     const bool has_opacities = loaded.unit_distance.has_value();
     return has_opacities ? "it has no opacity anywhere; `opacity_points` 0:0.03,1:0.2 gives it some"
-                         : "it has no extinction anywhere; write numbers above 0 into its last column";
+                         : "its extinctions are all 0; write numbers above 0 in its last column";
   }
   if (options.range)
     return fmt::format("leave `range` out, or give values that the field has, as `range` {:.6g},{:.6g}", field[0],
                        field[1]);
-  return "`rescale` stretches it over them, `range` over others";
+  return "`rescale` stretches it over these values, `range` over other values";
 }
 
 /// Adds a warning if the image will be correct but show nothing.
@@ -141,9 +142,9 @@ void warn_of_nothing(const Dataset::State& data, const std::string& file_or_pres
   if (knots.empty()) return;
   if (!loaded.function.visible(low, high, emits)) {
     if (options.with_surfaces) return;
-    loaded.warnings.push_back(
-        fmt::format("the transfer function shows nothing: it is clear over the field's {:.6g} to {:.6g}; {}", low, high,
-                    remedy_for_clear(loaded, options, {low, high}, emits)));
+    loaded.warnings.push_back(fmt::format(
+        "the transfer function shows nothing: it is transparent for all of the field's values, {:.6g} to {:.6g}; {}",
+        low, high, remedy_for_clear(loaded, options, {low, high}, emits)));
   } else if (chosen && !options.logarithmic && knots.size() > 1 &&
              colormaps::is_far_off({knots.front().value, knots.back().value}, data.facts_of_all().scalar_range)) {
     loaded.warnings.push_back(fmt::format(

@@ -62,13 +62,14 @@ void refuse_without(bool drawn, const char* what, const OptionWords& words,
   for (const char* option : options)
     if (!drawn && words.given(option))
       throw bad_input(
-          fmt::format("{}: has no effect without {}; give that too, or leave it out", setting_name(option), what));
+          fmt::format("{}: it has no effect without {}; give both, or leave it out", setting_name(option), what));
 }
 
 void check_layer(const std::filesystem::path& layer) {
   const std::string extension = layer.extension().string();
   if ((extension != ".png" && extension != ".exr") || is_deep_name(layer))
-    throw bad_input(fmt::format("`annotation_layer` {}: it has alpha; name a .png or an .exr", layer.string()));
+    throw bad_input(fmt::format("`annotation_layer` {}: this layer needs an alpha channel; give a .png or an .exr",
+                                layer.string()));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ ImageSize parse_size(const std::string& option, const std::string& text) {
 }
 
 std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
-  constexpr auto allowed = "a size in memory; write 1M or more, like 512M or 2G";
+  constexpr auto allowed = "an amount of memory; write 1M or more, like 512M or 2G";
   std::string_view rest = text;
   for (const std::string_view ending : {"iB", "B"})
     if (rest.ends_with(ending)) {
@@ -131,7 +131,9 @@ WithoutWords parse_without(const std::string& option, const std::string& text) {
     const std::string_view word = std::string_view(text).substr(at, end - at);
     const auto* found = std::ranges::find(mechanisms, word, &std::pair<std::string_view, bool Mechanisms::*>::first);
     if ((found == std::end(mechanisms) && word != "merging") || end + 1 == text.size())
-      throw wrong(option, text, "known; write some of culling, skipping, termination, lattice, sharing, merging");
+      throw wrong(
+          option, text,
+          "a list of optimizations; write one or more of culling, skipping, termination, lattice, sharing, merging");
     (found == std::end(mechanisms) ? without.merging : without.use.*found->second) = false;
     at = end + 1;
   }

@@ -28,17 +28,17 @@ DeviceSettings device_settings(const OptionWords& words, bool for_volume) {
   const std::string& compositor = words.word("compositor");
   assign(settings.half, words.choice("framebuffer", on_off));
   if (words.given("framebuffer") && compositor != "gl-fragment")
-    throw bad_input("`framebuffer`: is for `compositor` gl-fragment; leave one of the two out");
+    throw bad_input("`framebuffer`: it is for `compositor` gl-fragment; leave one of the two out");
   const bool asks_for_gl = compositor.starts_with("gl-");
   const std::vector<Backend> backends = backends_of(words.word("backend"));
   const auto is = [](Backend wanted) { return [wanted](Backend b) { return b == wanted; }; };
   const bool all_cpu = std::ranges::all_of(backends, is(Backend::cpu));
   const bool named = std::ranges::any_of(backends, [](Backend b) { return b == Backend::osmesa || b == Backend::egl; });
   if (compositor == "cpu" && named)
-    throw bad_input(
-        fmt::format("`backend` {}: `compositor` cpu needs none; leave one of the two out", words.word("backend")));
+    throw bad_input(fmt::format("`backend` {}: `compositor` cpu does not use a backend; leave one of the two out",
+                                words.word("backend")));
   if (for_volume && (asks_for_gl || named))
-    throw bad_input("`compositor` and `backend`: volumes are cast on the CPU; leave them out");
+    throw bad_input("`compositor` and `backend`: volumes are rendered on the CPU; leave them out");
   if (asks_for_gl && !backends.empty() && all_cpu)
     throw bad_input(
         fmt::format("`backend` cpu: `compositor` {} needs osmesa, egl or auto; or use `compositor` cpu", compositor));
@@ -47,7 +47,7 @@ DeviceSettings device_settings(const OptionWords& words, bool for_volume) {
     if (!settings.by_local_rank) settings.egl_device = words.count("egl-device", 0);
     if (std::ranges::none_of(backends, is(Backend::egl)) && std::ranges::none_of(backends, is(Backend::automatic)) &&
         !(asks_for_gl && backends.empty()))
-      throw bad_input("`egl_device`: is for `backend` egl; leave one of the two out");
+      throw bad_input("`egl_device`: it is for `backend` egl; leave one of the two out");
   }
   if (for_volume || compositor == "cpu" || (all_cpu && !asks_for_gl)) return settings;
   settings.backends = backends.empty() ? std::vector{Backend::automatic} : backends;

@@ -38,7 +38,7 @@ void set_function(const OptionWords& words, RenderOptions& options) {
   options.transfer_function = words.word("transfer-function");
   function.rescale = words.given("rescale");
   if (function.rescale && options.transfer_function.empty())
-    throw bad_input("`rescale`: is for a `transfer_function` file; name one, or leave it out");
+    throw bad_input("`rescale`: it is for a `transfer_function` file; give one, or leave `rescale` out");
   function.rescale_presets = true;
   assign(function.unit_distance, words.positive("unit-distance"));
   assign(function.opacity_scale, words.positive("opacity"));
@@ -56,7 +56,8 @@ LoadedTransferFunction chosen_function(const Dataset& data, const RenderOptions&
   LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, function);
   if (options.settings.mesh.shading && data.is_mesh() && data.association() == Association::cell)
     loaded.warnings.emplace_back(
-        "`shade`: lights nothing, a value of each cell has no gradient; `smooth` gives values at the points");
+        "`shade`: it has no effect, because a field with one value per cell has no gradient; `smooth` gives values at "
+        "the points");
   if (!options.settings.surfaces.empty())
     for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
       loaded.warnings.push_back(warning);

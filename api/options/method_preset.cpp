@@ -15,8 +15,9 @@ inline namespace v0_1 {
 void apply_method_preset(int ranks, OptionWords& words) {
   if (!words.given("preset")) return;
   if (const auto colors = nearest_name(words.word("preset"), preset_names()))  // other programs call these presets
-    throw bad_input(fmt::format("`preset`: '{}' is not a published method; for colours write `transfer_function` {}",
-                                words.word("preset"), *colors));
+    throw bad_input(
+        fmt::format("`preset`: '{}' is not the preset of a published method; for colours write `transfer_function` {}",
+                    words.word("preset"), *colors));
   static_cast<void>(words.choice("preset"));
   words.set_default("rasterizer", "scanline");
   // An accuracy is only valid with `auto`, so a given accuracy selects that method.

@@ -28,7 +28,7 @@ Integrator integrator_of(const OptionWords& words, bool is_grid) {
   const std::string& word = words.word("integrator");
   if (!word.empty()) integrator = is_grid ? grid_integrator(word) : parse_integrator("`integrator`", word);
   if (words.given("accuracy") && integrator.kind != IntegratorKind::automatic)
-    throw bad_input(fmt::format("`accuracy`: has no effect with `integrator` {}; leave one of the two out", word));
+    throw bad_input(fmt::format("`accuracy`: it has no effect with `integrator` {}; leave one of the two out", word));
   assign(integrator.accuracy, words.positive("accuracy"));
   return integrator;
 }
@@ -38,9 +38,9 @@ std::optional<Shading> shading_of(const OptionWords& words) {
   const std::string& light = words.word("light");
   if (!words.given("shade")) {
     if (light.empty()) return std::nullopt;
-    throw bad_input("`light`: has no effect without `shade`; add it, or leave `light` out");
+    throw bad_input("`light`: it has no effect without `shade`; add `shade`, or leave `light` out");
   }
-  if (words.given("no-shade")) throw bad_input("`no_shade`: contradicts `shade`; leave one of the two out");
+  if (words.given("no-shade")) throw bad_input("`no_shade`: it contradicts `shade`; leave one of the two out");
   Shading shading;
   if (light.empty()) return shading;
   constexpr std::string_view world = "world:";
@@ -67,8 +67,7 @@ void set_grid(const OptionWords& words, RenderOptions& options) {
   GridSettings& grid = options.settings.grid;
   if (words.given("step") && !takes_steps(options.settings.integrator))
     throw bad_input(
-        fmt::format("`step`: has no effect with `integrator` {}; use sampled or preintegrated, or leave it "
-                    "out",
+        fmt::format("`step`: it has no effect with `integrator` {}; use sampled or preintegrated, or leave it out",
                     method_word(options.settings.integrator.kind)));
   assign(grid.step, words.positive("step"));
   grid.shading = shading_of(words);
@@ -76,7 +75,7 @@ void set_grid(const OptionWords& words, RenderOptions& options) {
   assign(grid.edge_bricks, words.choice("edge-bricks", edge_brick_kinds));
   assign(grid.cache, words.choice("cache", cache_policies));
   if (words.given("preload") && grid.cache != CachePolicy::proximity)
-    throw bad_input("`preload`: has no effect without `cache` proximity; add it, or leave `preload` out");
+    throw bad_input("`preload`: it has no effect without `cache` proximity; add that, or leave `preload` out");
   assign(grid.preload_limit, words.count("preload", 0, 1 << 20));
 }
 

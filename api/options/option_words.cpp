@@ -187,7 +187,8 @@ std::optional<std::array<double, 2>> OptionWords::interval(std::string_view name
   return parsed(*this, name, [&](const std::string& setting, const std::string& word) {
     const auto ends = api::parse_numbers(setting, word, 2, fmt::format("two numbers; write {}", row(name).value));
     if (!(ends[0] < ends[1]) && !(may_be_equal && ends[0] == ends[1]))
-      throw bad_input(fmt::format("{}: '{}' does not ascend; write the smaller number first", setting, word));
+      throw bad_input(fmt::format("{}: the numbers of '{}' are not in ascending order; write the smaller number first",
+                                  setting, word));
     return std::array{ends[0], ends[1]};
   });
 }

@@ -39,37 +39,40 @@ Peel parse_peel(const std::string& word) {
 void set_peel(const OptionWords& words, RenderOptions& options) {
   options.frame.peel = parse_peel(words.word("peel"));
   if (!options.films.empty())
-    throw bad_input(fmt::format("`peel`: {} cannot hold layers; name images, as -o a_%04d.png, or leave `peel` out",
-                                options.films.front().string()));
+    throw bad_input(fmt::format(
+        "`peel`: {} cannot contain layers; give names of images, such as -o a_%04d.png, or leave `peel` out",
+        options.films.front().string()));
   if (options.to_standard_output)
-    throw bad_input("`peel`: standard output takes one image; name a file with -o, or leave `peel` out");
-  if (options.show_balance) throw bad_input("`peel`: `show` balance draws no layers; leave one of the two out");
+    throw bad_input("`peel`: standard output can receive only one image; give a file with -o, or leave `peel` out");
+  if (options.show_balance) throw bad_input("`peel`: `show` balance does not draw layers; leave one of the two out");
   if (words.given("deep-accuracy"))
     throw bad_input("`deep_accuracy`: has no effect on the layers of `peel`; leave one of the two out");
   const IntegratorKind kind = options.settings.integrator.kind;
   if (kind != IntegratorKind::automatic && kind != IntegratorKind::exact)
-    throw bad_input(fmt::format("`peel`: `integrator` {} gives a segment other light than its parts; use auto or exact",
-                                method_word(kind)));
+    throw bad_input(fmt::format(
+        "`peel`: with `integrator` {}, the light of a segment differs from that of its parts; use auto or exact",
+        method_word(kind)));
 }
 
 /// Throws for deep images of volumes that cannot be rendered.
 void refuse_deep_volumes(const RenderOptions& options) {
-  if (options.show_balance) throw bad_input("deep image: `show` balance draws none; name an .exr, .png or .pfm");
+  if (options.show_balance)
+    throw bad_input("deep image: `show` balance does not draw deep images; give an .exr, .png or .pfm");
   if (options.frame.peel) return;
   if (takes_steps(options.settings.integrator))
-    throw bad_input(
-        fmt::format("deep image: `integrator` {} gives a step other light than its parts; use auto or "
-                    "exact",
-                    method_word(options.settings.integrator.kind)));
-  if (options.settings.grid.shading) throw bad_input("deep image: it is not shaded; leave `shade` out");
+    throw bad_input(fmt::format(
+        "deep image: with `integrator` {}, the light of a step differs from that of its parts; use auto or exact",
+        method_word(options.settings.integrator.kind)));
+  if (options.settings.grid.shading) throw bad_input("deep image: shading is not supported; leave `shade` out");
 }
 
 /// Throws for images that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
-  if (options.show_balance) throw bad_input("`show` balance: its images are not annotated; leave one of the two out");
+  if (options.show_balance) throw bad_input("`show` balance: annotation is not supported; leave one of the two out");
   if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
       !options.plan.outputs.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
-    throw bad_input("deep image: it is not annotated; name an .exr, .png or .pfm too, or an `annotation_layer`");
+    throw bad_input(
+        "deep image: annotation is not supported; also give an .exr, .png or .pfm, or an `annotation_layer`");
 }
 
 }  // namespace
@@ -100,20 +103,23 @@ void set_outputs(const OptionWords& words, RenderOptions& options) {
   options.saved_scene = words.word("save-config");
   options.report_to_standard_output = options.report == standard_stream;
   if (options.report_to_standard_output && options.to_standard_output)
-    throw bad_input("`report` -: the image goes to standard output too; give one of them a file");
+    throw bad_input("`report` -: the image is also written to standard output; write one of them to a file");
   options.plan.resume = words.given("resume");
   if (options.plan.resume && options.to_standard_output)
-    throw bad_input("`resume`: standard output has no earlier images; leave it out, or write numbered images");
+    throw bad_input("`resume`: standard output has no earlier images; leave `resume` out, or write numbered images");
   if (options.plan.resume && !options.films.empty())
-    throw bad_input(fmt::format("`resume`: {} is made as a whole; leave it out, or write numbered images",
-                                options.films.front().string()));
+    throw bad_input(
+        fmt::format("`resume`: {} is always written as a whole; leave `resume` out, or write numbered images",
+                    options.films.front().string()));
   if (words.given("frame-rate") && options.films.empty())
-    throw bad_input("`frame_rate`: is for films; name one with -o FILE.mp4, or leave it out");
+    throw bad_input("`frame_rate`: it is for films; give one with -o FILE.mp4, or leave it out");
   assign(options.frame_rate, words.positive("frame-rate"));
   if (options.frame_rate > most_film_rate)
-    throw bad_input(fmt::format("`frame_rate`: {} is above {}; give fewer", words.word("frame-rate"), most_film_rate));
+    throw bad_input(fmt::format("`frame_rate`: {} is above {}; give fewer frames per second", words.word("frame-rate"),
+                                most_film_rate));
   if (options.frame_rate < least_film_rate)
-    throw bad_input(fmt::format("`frame_rate`: {} is below {}; give more", words.word("frame-rate"), least_film_rate));
+    throw bad_input(fmt::format("`frame_rate`: {} is below {}; give more frames per second", words.word("frame-rate"),
+                                least_film_rate));
   options.quiet = words.given("quiet");
   options.progress = !options.quiet && words.given("progress");
 }
@@ -121,7 +127,7 @@ void set_outputs(const OptionWords& words, RenderOptions& options) {
 void set_pictures(const OptionWords& words, RenderOptions& options) {
   options.frame.deep = std::ranges::any_of(options.plan.outputs, is_deep_name);
   if (!options.frame.deep && !words.given("peel") && words.given("deep-accuracy"))
-    throw bad_input("`deep_accuracy`: is for a deep image; name one with -o FILE.deep.exr, or leave it out");
+    throw bad_input("`deep_accuracy`: it is for a deep image; give one with -o FILE.deep.exr, or leave it out");
   assign(options.frame.deep_accuracy, words.positive("deep-accuracy"));
   if (words.given("peel")) set_peel(words, options);
   if (options.is_grid() && options.frame.deep) refuse_deep_volumes(options);

@@ -16,13 +16,12 @@ void set_balance(const OptionWords& words, RankSettings& ranks) {
   assign(ranks.direct_send, words.choice("direct-send", direct_sends));
   const bool sorts_last = ranks.distribution == Distribution::sort_last;
   if (!sorts_last && words.given("direct-send"))
-    throw bad_input("`direct_send`: has no effect without `distribution` sort-last; add it, or leave it out");
+    throw bad_input("`direct_send`: it has no effect without `distribution` sort-last; add that, or leave it out");
   for (const char* option : {"balance", "balance-resolution", "balance-weights"})
     if (sorts_last && words.given(option))
-      throw bad_input(
-          fmt::format("{}: has no effect with `distribution` sort-last, which splits the volume; leave one "
-                      "of the two out",
-                      setting_name(option)));
+      throw bad_input(fmt::format(
+          "{}: it has no effect with `distribution` sort-last, which splits the volume; leave one of the two out",
+          setting_name(option)));
   assign(ranks.balance, words.choice("balance", balances));
   assign(ranks.balance_resolution, words.positive("balance-resolution"));
   if (ranks.balance_resolution > 1 || ranks.balance_resolution < 1e-3)
@@ -46,7 +45,8 @@ void set_ranks(const OptionWords& words, RenderOptions& options) {
   ranks.exchange = words.choice("exchange", exchanges);
   if (!parse_without("`without`", words.word("without")).merging) {
     if (ranks.exchange == Exchange::runs)
-      throw bad_input("`without` merging: is `exchange` segments, but runs were asked for; leave one of the two out");
+      throw bad_input(
+          "`without` merging: it implies `exchange` segments, but runs were requested; leave one of the two out");
     ranks.exchange = Exchange::segments;
   }
   assign(ranks.partition.kind, words.choice("partition", partition_kinds));

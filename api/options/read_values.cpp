@@ -53,7 +53,7 @@ std::optional<Warp> warp_of(const std::string& word) {
   try {
     return Warp{word.substr(0, colon), parse_number("`warp`", word.substr(colon + 1))};
   } catch (const Error&) {
-    throw fault("has no number behind its colon");
+    throw fault("has no number after the colon");
   }
 }
 
@@ -88,7 +88,8 @@ std::optional<StepRange> time_steps(const OptionWords& words) {
   range.last = step_number(word.substr(colon + 1, second == std::string::npos ? second : second - colon - 1));
   if (second != std::string::npos) range.stride = step_number(word.substr(second + 1), 1);
   if (*range.last < range.first)
-    throw bad_input(fmt::format("`time_step`: '{}' ends before it begins; give the smaller step first", word));
+    throw bad_input(
+        fmt::format("`time_step`: '{}' ends with a step before its first; give the smaller step first", word));
   return range;
 }
 
@@ -98,8 +99,8 @@ inline namespace v0_1 {
 
 void refuse_time_steps(const OptionWords& words) {
   if (api::time_steps(words))
-    throw bad_input(
-        fmt::format("`time_step`: '{}' is a film, which only render makes; give one step", words.word("time-step")));
+    throw bad_input(fmt::format("`time_step`: '{}' means a film, which only render can make; give one step",
+                                words.word("time-step")));
 }
 
 ReadOptions read_options(const OptionWords& words, bool is_grid) {

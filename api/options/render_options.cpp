@@ -22,8 +22,8 @@ void refuse_others(const OptionWords& words, bool is_grid) {
     const auto choices = row->choices();
     if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
     if (words.given("input")) require_input(words.word("input"));  // a missing input is neither a mesh nor a volume
-    throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
-                                is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
+    throw bad_input(fmt::format("{}: it is for {}; leave it out", api::setting_name(row->key()),
+                                is_grid ? "meshes, but the input is a volume" : "volumes, but the input is a mesh"));
   }
 }
 
@@ -65,7 +65,7 @@ RenderOptions render_options(const OptionWords& words, bool is_grid) {
   api::set_method(words, options);
   options.settings.surfaces = api::surfaces_of(words, options.block_surfaces);
   if (is_grid && !options.block_surfaces.empty())
-    throw bad_input("`surface`: is for meshes, and the input is a volume; `iso` VALUE shows a surface in one");
+    throw bad_input("`surface`: it is for meshes, but the input is a volume; `iso` VALUE shows a surface in one");
   api::set_ranks(words, options);
   api::set_pictures(words, options);
   return options;

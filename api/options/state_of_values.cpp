@@ -57,7 +57,7 @@ std::string place_word(Place place) {
 }
 
 Error unstated(const char* setting, const char* what) {
-  return bad_input(fmt::format("`{}`: {}, which no option can state; give it to the session", setting, what));
+  return bad_input(fmt::format("`{}`: {}, which no option can express; give it to the session", setting, what));
 }
 
 std::string look_text(const std::optional<glm::dvec3>& color, double opacity) {

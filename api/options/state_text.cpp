@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 const OptionRow& row_named(std::string_view name, const std::string& source) {
-  if (name == "config") throw bad_input(source + ": 'config' names another such file; leave it out");
+  if (name == "config") throw bad_input(source + ": 'config' would read another such file; leave it out");
   const OptionRow* const row = find_option(Trait::render, name);
   const bool is_short = row != nullptr && name.size() == 1 && row->key() != name;
   if (row != nullptr && !is_short) return *row;

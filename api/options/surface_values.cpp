@@ -102,8 +102,8 @@ void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockS
         {std::make_shared<const TriangleMesh>(read_triangles(name)), look.color, look.opacity});
   else
     throw bad_input(
-        fmt::format("`surface`: '{}' is neither boundary nor a file that is there; give one of the two, a file as "
-                    ".ply, .stl, .vtp, .vtk, .poly or .smesh, or a block of the mesh",
+        fmt::format("`surface`: '{}' is neither boundary nor an existing file; give one of the two, with a file such "
+                    "as .ply, .stl, .vtp, .vtk, .poly or .smesh, or a block of the mesh",
                     name));
 }
 
@@ -127,7 +127,8 @@ std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::ar
   for (const IsoSurface& iso : surfaces.iso)
     if (!(range[0] < iso.value && iso.value <= range[1]))
       warnings.push_back(
-          fmt::format("`iso` {}: shows nothing, the field goes from {:.6g} to {:.6g}; choose a value between",
+          fmt::format("`iso` {}: it shows nothing, because the field's values are from {:.6g} to {:.6g}; choose a "
+                      "value between them",
                       iso.value, range[0], range[1]));
   return warnings;
 }

@@ -34,10 +34,10 @@ void set_view(const OptionWords& words, RenderOptions& options) {
   const bool has_camera = words.given("camera");
   for (const char* option : {"view", "up", "projection"})
     if (has_camera && words.given(option))
-      throw bad_input(fmt::format("{}: has no effect with `camera`, whose file states it; leave one of the two out",
+      throw bad_input(fmt::format("{}: it has no effect with `camera`, whose file defines it; leave one of the two out",
                                   setting_name(option)));
   if (words.given("fit") && !has_camera)
-    throw bad_input("`fit`: is for a `camera` file, other views fit anyway; name one, or leave it out");
+    throw bad_input("`fit`: it is for a `camera` file, because other views always fit; give one, or leave `fit` out");
   options.plan.cameras = words.word("camera");
   options.plan.size = words.size("size");
   assign(options.plan.orbit, words.count("orbit", 1, 1'000'000));

@@ -31,7 +31,7 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
       scene::with_threads(threads, [&] { return std::make_shared<const volume::CellRanges>(*state->samples); });
   const scene::ValueRange& range = state->ranges->range;
   if (range.empty())
-    throw scene::bad_input(whole.source + ": so few samples contain none of its data; ask for more, or use the data");
+    throw scene::bad_input(whole.source + ": so few samples contain none of its data; request more, or use the data");
   const GridGeometry& geometry = state->samples->geometry();
   state->facts = {
       scene::bounds(geometry), {range.low, range.high}, scene::mean_thickness(geometry), 0, geometry.association};
@@ -70,8 +70,8 @@ std::optional<Dataset> coarse_preview(const Dataset& dataset, const PreviewSetti
                                       const std::stop_token& stop, const Communicator& communicator) {
   const Dataset::State& data = StateAccess::of(dataset);
   if (settings.samples < least_samples || settings.samples > most_samples)
-    throw scene::bad_input(
-        fmt::format("preview: {} samples; choose {} to {}", settings.samples, least_samples, most_samples));
+    throw scene::bad_input(fmt::format("preview: {} samples are not supported; choose {} to {}", settings.samples,
+                                       least_samples, most_samples));
   if (data.ranks > 1 && data.ranks != communicator.size())
     throw scene::bad_input(fmt::format(
         "{}: this rank has a part of the mesh; give the communicator that it was opened with", data.source));

@@ -98,7 +98,7 @@ double smallest_positive(const Dataset& dataset, std::span<const Share> shares, 
   for (const Share& share : shares)
     if (share.value > 0) least = std::min(least, share.value);
   if (!(high > 0))
-    throw scene::bad_input(fmt::format("{}: `log`: the range ends at {:.6g}, and logarithms need a positive value",
+    throw scene::bad_input(fmt::format("{}: `log`: the range ends at {:.6g}, but logarithms need a positive value",
                                        dataset.source(), high));
   return least < high ? least : high / 2;
 }
@@ -107,7 +107,8 @@ double smallest_positive(const Dataset& dataset, std::span<const Share> shares, 
 
 Histogram histogram(const Dataset& dataset, const HistogramOptions& options) {
   if (options.bins < 1 || options.bins > most_bins)
-    throw scene::bad_input(fmt::format("histogram: {} bins; choose 1 to {}", options.bins, most_bins));
+    throw scene::bad_input(
+        fmt::format("histogram: {} bins are not supported; choose 1 to {}", options.bins, most_bins));
   Histogram found;
   found.range = options.range.value_or(default_range(dataset));
   found.logarithmic = options.logarithmic;

@@ -299,8 +299,10 @@ RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction&
                                        view.size.width, view.size.height));
   constexpr std::size_t most_samples = 65536;
   if (samples < 2 || samples > most_samples)
-    throw scene::bad_input(fmt::format("probe: {} samples along the ray; choose 2 to {}", samples, most_samples));
-  if (transfer_function.knots().empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
+    throw scene::bad_input(
+        fmt::format("probe: {} samples along the ray are not supported; choose 2 to {}", samples, most_samples));
+  if (transfer_function.knots().empty())
+    throw scene::bad_input("transfer function: it has no knots; give at least one");
   const Dataset::State& data = StateAccess::of(dataset);
   if (dataset.is_grid()) return probed(RayInGrid(data, view, pixel, transfer_function, settings), samples);
   if (data.ranks > 1 && data.ranks != communicator.size())

@@ -76,13 +76,13 @@ TEST(RawVolumes, InTheOtherOrderOfBytesGetANote) {
   std::string floats = test::bytes_of(test::counting<float>(64)),
               shorts = test::bytes_of(test::counting<std::int16_t>(64));
   const auto small = folder.write("a_4x4x4_float32.raw", floats);
-  EXPECT_EQ(note_with(Dataset::open(small), "order of bytes"), "");
-  EXPECT_NE(note_with(Dataset::open(small, big), "order of bytes are: try `endian` little"), "");
+  EXPECT_EQ(note_with(Dataset::open(small), "byte order"), "");
+  EXPECT_NE(note_with(Dataset::open(small, big), "byte order: try `endian` little"), "");
   for (std::size_t k = 0; k < floats.size(); k += 4) std::reverse(floats.begin() + k, floats.begin() + k + 4);
   const auto swapped = folder.write("b_4x4x4_float32.raw", floats);
-  EXPECT_NE(note_with(Dataset::open(swapped), "order of bytes are: try `endian` big"), "");
-  EXPECT_EQ(note_with(Dataset::open(swapped, big), "order of bytes"), "");
-  EXPECT_EQ(note_with(Dataset::open(folder.write("c_4x4x4_int16.raw", shorts), big), "order of bytes"), "");
+  EXPECT_NE(note_with(Dataset::open(swapped), "byte order: try `endian` big"), "");
+  EXPECT_EQ(note_with(Dataset::open(swapped, big), "byte order"), "");
+  EXPECT_EQ(note_with(Dataset::open(folder.write("c_4x4x4_int16.raw", shorts), big), "byte order"), "");
 }
 
 TEST(FillValues, OfMeshesAreNotedToo) {

@@ -165,7 +165,7 @@ TEST(ValidSettings, ThoseOfAFrameAreFitForItsSession) {
   EXPECT_NE(words(deep, scanline, DataKind::mesh).find("gaps and overlaps"), std::string::npos);
   Settings shaded;
   shaded.grid.shading.emplace();
-  EXPECT_NE(words(deep, shaded, DataKind::grid).find("not shaded"), std::string::npos);
+  EXPECT_NE(words(deep, shaded, DataKind::grid).find("shading is not supported"), std::string::npos);
   EXPECT_EQ(words(layers, shaded, DataKind::grid), "no error");
 }
 

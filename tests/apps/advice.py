@@ -61,22 +61,22 @@ tessera completion tcsh => use bash, zsh or fish => tessera completion zsh
 
 # words of arguments
 S --size 0x5 => write WxH, each side 1 to 65536 => S --size 9x5
-S --size 60000x60000 => make it smaller => S --size 600x600
+S --size 60000x60000 => make the image smaller => S --size 600x600
 R --memory 12Q => write 1M or more, like 512M or 2G => R --memory 512M
 R --background lightgrai => did you mean lightgray? => R --background lightgray
 R --background qqqqqqqq => or a name of CSS => R --background '#102030'
 R --background 1,2 => write R,G,B (linear light => R --background 0,0.5,1
-R --without sleep => write some of culling => R --without culling,skipping,termination,lattice,sharing,merging
+R --without sleep => write one or more of culling => R --without culling,skipping,termination,lattice,sharing,merging
 R --integrator fast => use exact, sampled:N, preintegrated[:N], partial or auto => R --integrator partial
 R --color-bar=middle => is not a place; use top-left => R --color-bar=top-left
-R --outline=2 => takes no value; leave that out => R --outline
+R --outline=2 => it takes no value; leave the value out => R --outline
 
 # annotations
 R --annotate {tiem} => {tiem} is unknown; use {field} {time} {file} => R --annotate {time}
 R --axes=all => use triad, box or both => R --axes=both
 R --color-bar-title T => has no effect without --color-bar => R --color-bar --color-bar-title T
 R --color-bar --color-bar-range 5 => write LOW,HIGH => R --color-bar --color-bar-range 1,5
-R --color-bar --color-bar-range 5,1 => does not ascend; write the smaller number first
+R --color-bar --color-bar-range 5,1 => are not in ascending order; write the smaller number first
     => R --color-bar --color-bar-range 1,5
 R --color-bar --color-bar-scale cubic => use linear or log => R --color-bar --color-bar-scale log
 R --color-bar --color-bar-scale log --color-bar-range=-1,5 => give --color-bar-range
@@ -84,9 +84,9 @@ R --color-bar --color-bar-scale log --color-bar-range=-1,5 => give --color-bar-r
 R --annotate a --annotation-size 2000 => it must be 4 to 1000 => R --annotate a --annotation-size 1000
 R --annotation-size 20 => has no effect without => R --annotate a --annotation-size 20
 R --axes --length-unit mm => has no effect without --axes=box or --scale-bar => R --axes=box --length-unit mm
-R --outline --annotation-layer l.pfm => name a .png or an .exr => R --outline --annotation-layer l.png
-R --outline --annotation-layer l.deep.exr => name a .png or an .exr => R --outline --annotation-layer l.exr
-tessera render m.vtu -o a.deep.exr --outline => name an .exr, .png or .pfm too => R -o a.deep.exr --outline
+R --outline --annotation-layer l.pfm => give a .png or an .exr => R --outline --annotation-layer l.png
+R --outline --annotation-layer l.deep.exr => give a .png or an .exr => R --outline --annotation-layer l.exr
+tessera render m.vtu -o a.deep.exr --outline => also give an .exr, .png or .pfm => R -o a.deep.exr --outline
 
 # files of options
 R --config none.toml => there is no such file => R
@@ -103,7 +103,7 @@ toml "\377\376o\0p\0" => save it as UTF-8 => toml "opacity = 2\n"
 # cameras and the view
 R --view sideways => use front, back, left => R --view left
 R --up 0,0,0 => give the direction that is up => R --up 0,1,0
-R --fit => name one, or leave it out => R --fit --camera c.json
+R --fit => give one, or leave --fit out => R --fit --camera c.json
 R --camera c.json --view front => leave one of the two out => R --camera c.json
 R --camera c.json --projection orthographic => leave one of the two out => R --projection orthographic
 R --camera { => not valid JSON => R --camera c.json
@@ -118,17 +118,17 @@ R --clip 9,0,0,1,0,0 => nothing is on the side that --clip keeps => R --clip 0,0
 R --clip 0,0,0,0,0,0 => give the side to keep => R --clip 0,0,0,0,0,1
 R --clip box:0,0,0,0,1,1 => give two opposite corners => R --clip box:0,0,0,1,1,1
 R --threshold 0,0.5 --clip 0.4,0.4,0.4,1,1,1 => move the plane => R --threshold 0,1 --clip 0.4,0.4,0.4,1,1,1
-R --clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0 => turn the normal round or move it => R --clip 5,0,0,-1,0,0
+R --clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0 => reverse the normal or move the plane => R --clip 5,0,0,-1,0,0
 R --block wall => leave --block out => R
 I can.ex2 --block steal => the nearest is 'steel' => I can.ex2 --block steel
 I can.ex2 --time-step 3 => there is no time step 3 => I can.ex2 --time-step 2
-R --time-step 2 => leave it out => R
+R --time-step 2 => leave --time-step out => R
 I m.vtu --time-step 1:2 => give one step => I m.vtu
-I can.ex2 --time-step all => which only render makes => film can.ex2 --time-step all
-film can.ex2 --time-step 0:3 => there is no time step 3, it has 3 => film can.ex2 --time-step 0:2
+I can.ex2 --time-step all => which only render can make => film can.ex2 --time-step all
+film can.ex2 --time-step 0:3 => there is no time step 3, it has only 3 => film can.ex2 --time-step 0:2
 film can.ex2 --time-step x:3 => is not a whole number from 0 up => film can.ex2 --time-step 0:2
 film can.ex2 --time-step 0:2:0 => is not a whole number from 1 up => film can.ex2 --time-step 0:2:1
-tessera render can.ex2 -o a.png --size 9x9 --time-step all => need a numbered name => film can.ex2 --time-step all
+tessera render can.ex2 -o a.png --size 9x9 --time-step all => need numbers => film can.ex2 --time-step all
 film can.ex2 --time-step 2:1 => give the smaller step first => film can.ex2 --time-step 1:2
 R --warp v:x => write NAME, NAME:FACTOR or off => R --warp off
 
@@ -136,7 +136,7 @@ R --warp v:x => write NAME, NAME:FACTOR or off => R --warp off
 R --range 1,0 => write the smaller number first => R --range 0,1
 R --opacity-points 0:0,5 => write T:A => R --opacity-points 0:0,0.5:0.1
 R --opacity-points 0:0,2:1 => write 0 to 1, ascending => R --opacity-points 0:0,1:1
-R --rescale => name one, or leave it out => R
+R --rescale => give one, or leave --rescale out => R
 R --iso 7 => choose a value between => R --iso 0.5
 R --transfer-function '{"knots": [[0, 1]]}' => write [value, red, green, blue, extinction]
     => R --transfer-function '{"knots": [[0, 1, 0, 0, 1]]}'
@@ -149,7 +149,7 @@ knots "0 1e-9 0 0 0\n1 1e-9 0 0 0\n" --emission independent => give the transfer
 R --accuracy 1e-3 --integrator sampled:4 => leave one of the two out => R --integrator sampled:4
 R --shade --emission independent => leave one of the two out => R --shade
 R --shade --rasterizer scanline => use --rasterizer planes => R --shade --rasterizer planes
-R --deep-accuracy 1e-3 => name one with -o FILE.deep.exr => R --deep-accuracy 1e-3 -o a.deep.exr
+R --deep-accuracy 1e-3 => give one with -o FILE.deep.exr => R --deep-accuracy 1e-3 -o a.deep.exr
 R --peel 1 => like 0.95:4 => R --peel 0.95:4
 R --peel 0.5 --deep-accuracy 1e-2 => leave one of the two out => R --peel 0.5
 R --peel 0.5 --rasterizer scanline => use planes => R --peel 0.5 --rasterizer planes
@@ -173,8 +173,8 @@ tessera render c.vtk -o a.png --size 9x9 --field f --shade => gives values at th
     => tessera render c.vtk -o a.png --size 9x9 --field f --shade --smooth
 
 # surfaces
-R --surface walls => it is not made of named blocks; give boundary or a file => R --surface a.ply; R --surface boundary
-R --surface walls.ply => is neither boundary nor a file that is there => R --surface a.ply
+R --surface walls => it has no named blocks; give boundary or a file => R --surface a.ply; R --surface boundary
+R --surface walls.ply => is neither boundary nor an existing file => R --surface a.ply
 R --surface c.vtk => is not a surface of triangles; give a .ply, .stl, .vtp => R --surface a.ply
 R --surface boundary:reddish => is not a colour; write R,G,B => R --surface boundary:red
 R --surface boundary:red:2 => opacity 2 => R --surface boundary:red:0.5
@@ -196,9 +196,9 @@ V --distribution sort-last --integrator preintegrated => use --integrator auto, 
     => V --distribution sort-last --integrator auto
 V -o a.deep.exr --integrator sampled => auto or exact => V -o a.deep.exr --integrator auto
 V --iso 0.5 --integrator sampled => leave one of the two out => V --iso 0.5 --integrator exact
-V --direct-send synchronous => add it, or leave it out => V
+V --direct-send synchronous => add that, or leave it out => V
 V --type int7 => use int8, uint8 => I v.raw $raw
-V $raw => this one states them itself => V
+V $raw => this file states them itself => V
 I v.raw => give --dims WxHxD --type => I v.raw $raw
 I v.raw --dims 8x8 --type float32 => three sizes; write WxHxD => I v.raw $raw
 I v.raw $raw --spacing 1,0,1 => three numbers above 0; write X,Y,Z => I v.raw $raw --spacing 1,1,1
@@ -206,10 +206,10 @@ I v.raw $raw --skip 1 => give the right dimensions and type => I v.raw $raw
 (printf 12345; cat v.raw) > w.raw; I w.raw $raw => or --skip 5 if a header is before them => I w.raw $raw --skip 5
 tessera convert v.vti w.raw => read it with --dims 8x8x8 --type float32 => I w.raw $raw
 I v.vti --check => leave it out => I v.vti
-four_axes ''; I b.nrrd => add a line of kinds if it is one of space
+four_axes ''; I b.nrrd => add such a line if it is an axis of space
     => four_axes 'kinds: vector domain domain domain\n'; I b.nrrd
 gzip a.nhdr; I a.nhdr.gz => unpack it with gunzip => gunzip a.nhdr.gz; I a.nhdr
-mv a0.raw b.raw; I a.nhdr => put the file it names there => mv b.raw a0.raw; I a.nhdr
+mv a0.raw b.raw; I a.nhdr => put the file there => mv b.raw a0.raw; I a.nhdr
 
 # inputs
 I scans => name a file in it => I scan
@@ -218,14 +218,14 @@ I t.vtu.txt => lists them => tessera formats
 I /dev/null => give one that can be read twice => I v.vti
 : | tessera render - -o a.png => it is empty; send a file to it => tessera render - -o a.png --size 9x9 < a.ply
 I m.case => it names m.geo, but there is no such file; put it there => cp ensight/m.geo .; I m.case
-rm case/constant/polyMesh/faces; I case => and there is no such file; put it there => I cavity
+rm case/constant/polyMesh/faces; I case => but there is no such file; put it there => I cavity
 I alone.foam => move it into the directory of a case, or name that directory => mv alone.foam cavity; I cavity/alone.foam
 mkdir one; cp scan/slice000.dcm one; I one => give a directory of slices => I scan
 cp scan/slice000.dcm a.dcm; printf '' > scan/none.dcm; I scan/none.dcm => write it again => I scan
 mv m_0000.vtu b.vtu; I m.pvtu => there is no such file => mv b.vtu m_0000.vtu; I m.pvtu
 tessera render t%d.vtu -o a%d.png => choose steps that have it with --time-step FIRST:LAST
     => tessera render t%d.vtu -o a.png --size 9x9 --time-step 0:0
-tessera render q%d.vtu -o a%d.png => it would be like q1.vtu
+tessera render q%d.vtu -o a%d.png => which would be like q1.vtu
     => cp t.vtu q1.vtu; tessera render q%d.vtu -o a%d.png --size 9x9
 tessera render nowhere/q%d.vtu -o a%d.png => check its name => R
 printf words > b.meshb; I b.meshb => check what it is => I a.mesh
@@ -234,10 +234,10 @@ printf '\n' > b.txt; R --camera b.txt => give position, focal_point => R --camer
 printf '<Xdmf><Domain/></Xdmf>' > b.xdmf; I b.xdmf => give a mesh or a volume => I a.xdmf
 echo text > b.dcm; I b.dcm => finds no images in it; give a directory or a file of slices => I scan
 printf '(2 3)\n(10 (0 1 ffffffff 0))\n' > b.cas; I b.cas => export CGNS or EnSight => I can.ex2
-sed 's/0 0 1</1 1 0</' t.vtu > b.vtu; tessera render b.vtu -o a.png => give a mesh that has => I t.vtu
-for k in $(seq 71); do echo "INCLUDE '$((k + 1)).bdf'" > $k.bdf; done; I 1.bdf => give one file => I a.bdf
+sed 's/0 0 1</1 1 0</' t.vtu > b.vtu; tessera render b.vtu -o a.png => give a mesh whose cells have volume => I t.vtu
+for k in $(seq 71); do echo "INCLUDE '$((k + 1)).bdf'" > $k.bdf; done; I 1.bdf => write them as one file => I a.bdf
 cp t1.vtu m_0001.vtu; I m.pvtu => write all pieces with the same fields => cp m_0000.vtu m_0001.vtu; I m.pvtu
-tessera timing c.json => give a file that tessera render --timing wrote => R --timing t.json; tessera timing t.json
+tessera timing c.json => give a file that tessera render wrote with --timing => R --timing t.json; tessera timing t.json
 R --like c.json => give a file that --report has written => R --report r.json; R --like r.json
 echo '[1]' > b.json; R --like b.json => give a file that --report has written => R
 echo '{"mesh": 1}' > b.json; R --like b.json => give a file that --report has written => R
@@ -249,15 +249,15 @@ tessera render m.vtu -o a.bmp => end it in .exr, .png => R
 tessera render m.vtu -o nowhere/a.png => make the directory first, or name another
     => mkdir nowhere; S -o nowhere/a.png --size 9x9
 mkdir b.png; R -o b.png => name a file, not a directory => R -o b.png/a.png
-R -o - --report - => give one of them a file => R -o - --report r.json
-R -o - --resume => leave it out => R -o -
+R -o - --report - => write one of them to a file => R -o - --report r.json
+R -o - --resume => leave --resume out => R -o -
 R -o - -o - => give it once => R -o -
-tessera render m.vtu -o a.mp4 --peel 0.5 => name images => film m.vtu --peel 0.5
-tessera render m.vtu -o - --peel 0.5 => name a file with -o => R --peel 0.5
+tessera render m.vtu -o a.mp4 --peel 0.5 => give names of images => film m.vtu --peel 0.5
+tessera render m.vtu -o - --peel 0.5 => give a file with -o => R --peel 0.5
 printf 'exit 1' > ffmpeg; chmod +x ffmpeg; PATH=.:$PATH; S -o a.gif --size 9x9 => or write a_%04d.png => S -o a_%04d.png
 R --frame-rate 25 => or leave it out => R
-R --outline --annotation-layer l.jpg => name a .png or an .exr => R --outline --annotation-layer l.png
-tessera render m.vtu -o a.exr --size 9x9 --half --background 1e6,0,0 => write float => R -o a.exr --background 1e6,0,0
+R --outline --annotation-layer l.jpg => give a .png or an .exr => R --outline --annotation-layer l.png
+tessera render m.vtu -o a.exr --size 9x9 --half --background 1e6,0,0 => write 32-bit floats => R -o a.exr --background 1e6,0,0
 tessera render m.vtu -o a.jpg --size 65536x1 => write .png => S --size 65536x1
 PATH=/nowhere $program render m.vtu -o a.mp4 => write a_%04d.png => tessera render m.vtu -o a_%04d.png --size 9x9
 tessera convert m.vtu a.xyz => choose .vtu or .tets => tessera convert m.vtu a.tets
@@ -270,7 +270,7 @@ tessera convert c.vtk b.tets => write .vtu, or smooth it => tessera convert c.vt
 sed '0,/0 1 2 3</s//0 1 2 1e99</' t.vtu > b.vtu; tessera convert b.vtu b.tets
     => write .vtu, which holds doubles => tessera convert b.vtu a.vtu
 tessera convert uneven.vtr b.nrrd => write .vtr or .bricks => tessera convert uneven.vtr b.bricks
-tessera convert m.vtu b.vtu --partition file => give their number too
+tessera convert m.vtu b.vtu --partition file => give the number of pieces too
     => tessera convert m.vtu b.pvtu --partition file --pieces 2
 tessera generate castle b.vtu => kinds are demo, cube => tessera generate tet b.vtu
 tessera generate cube b.vtu towers=3 => it takes n, jitter => tessera generate cube b.vtu n=3
@@ -283,7 +283,7 @@ ln -s loop loop; R -o loop/a.png => check the disk and the file system => R
 (trap '' XFSZ; ulimit -f 0; tessera convert m.vtu b.vtu) => free some space or name another disk
     => tessera convert m.vtu b.vtu
 (ulimit -s 256; R) => ulimit -s 8192 => ulimit -s 8192; R
-R > /dev/full -o - => make room or close the pipe later => R -o - > b.png
+R > /dev/full -o - => free disk space, or keep the reading program open => R -o - > b.png
 at_terminal tessera render m.vtu -o - => is a terminal; send it to a file => R -o - > b.png
 TMPDIR=/proc tessera render - -o a.png < a.ply => or set TMPDIR to another directory
     => tessera render - -o a.png --size 9x9 < a.ply

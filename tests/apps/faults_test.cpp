@@ -81,7 +81,7 @@ TEST(Faults, InvalidArgumentsNameTheOption) {
       {{"--field", "nowhere"}, "nowhere"},
       {{"--transfer-function", "no-such-preset"}, "no-such-preset"},
       {{"--camera", "nowhere.json"}, "nowhere.json"},
-      {{"-o", folder / "a.png"}, "named twice"},
+      {{"-o", folder / "a.png"}, "given twice as an output"},
       {{"-o", folder / "none/a.png"}, "none/a.png"},
       {{"--report", folder / "none/r.json"}, "none/r.json"},
       {{"--timing", "/"}, "/"},

@@ -159,7 +159,7 @@ TEST(InputProtection, OneFileByTwoNamesIsOneOutput) {
   const Outcome run =
       tessera({"render", folder.cube(), "-o", folder / "a.png", "-o", folder / "here/a.png", "--size", "8x8"});
   EXPECT_EQ(run.status, 2) << run.err;
-  EXPECT_NE(run.err.find("named twice"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("given twice as an output"), std::string::npos) << run.err;
 }
 
 // Steps of a list that this run does not render are protected too.

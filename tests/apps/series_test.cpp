@@ -158,7 +158,7 @@ TEST_F(Series, FaultsAreOneLineBeforeAnythingIsRendered) {
   }
   const auto unnumbered = tessera(arguments({pattern}, "f.pfm"));
   EXPECT_EQ(unnumbered.status, 2);
-  EXPECT_NE(unnumbered.err.find("3 frames need a numbered name"), std::string::npos) << unnumbered.err;
+  EXPECT_NE(unnumbered.err.find("the names of 3 frames need numbers"), std::string::npos) << unnumbered.err;
   const auto run = tessera({"convert", missing, folder / "o.vtu"});
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.err.find("it is a time series, which only render and serve accept"), std::string::npos) << run.err;

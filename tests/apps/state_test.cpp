@@ -194,7 +194,7 @@ TEST(State, ReportsErrorsByName) {
   EXPECT_EQ(json(R"({"log":1})"), "s.json: 'log' is not true or false; give one");
   EXPECT_EQ(json(R"({"opacity":1,"opacity-scale":1})"),
             "s.json: 'opacity-scale' is given twice, by two names; keep one");
-  EXPECT_EQ(json(R"({"config":"a"})"), "s.json: 'config' names another such file; leave it out");
+  EXPECT_EQ(json(R"({"config":"a"})"), "s.json: 'config' would read another such file; leave it out");
   EXPECT_EQ(json("[]"), R"(s.json: is not a JSON object; write one, like {"field": "T", "size": "800x600"})");
   EXPECT_EQ(json("{"), json("[]"));
   const auto toml = [](const char* text) { return fault_of([&] { State::from_toml(text, "s.toml"); }); };
@@ -215,9 +215,11 @@ TEST(State, ReportsErrorsByName) {
     return fault_of([&] { static_cast<void>(wrong.settings(wrong.open(files))); });
   };
   EXPECT_EQ(used(R"({"accuracy":"x"})"), "`accuracy`: 'x' is not a number above 0");
-  EXPECT_EQ(used(R"({"light":"1,0,0"})"), "`light`: has no effect without `shade`; add it, or leave `light` out");
-  EXPECT_EQ(used(R"({"step":"0.5"})"), "`step`: is for volumes, and the input is a mesh; leave it out");
-  EXPECT_EQ(used(R"({"time-step":"all"})"), "`time_step`: 'all' is a film, which only render makes; give one step");
+  EXPECT_EQ(used(R"({"light":"1,0,0"})"),
+            "`light`: it has no effect without `shade`; add `shade`, or leave `light` out");
+  EXPECT_EQ(used(R"({"step":"0.5"})"), "`step`: it is for volumes, but the input is a mesh; leave it out");
+  EXPECT_EQ(used(R"({"time-step":"all"})"),
+            "`time_step`: 'all' means a film, which only render can make; give one step");
 }
 
 TEST(State, RefusesValuesWithoutWords) {
@@ -225,7 +227,7 @@ TEST(State, RefusesValuesWithoutWords) {
   Settings settings;
   settings.surfaces.triangles.emplace_back();
   EXPECT_EQ(fault_of([&] { state.set(settings, DataKind::mesh); }),
-            "`surface`: triangles in memory, which no option can state; give it to the session");
+            "`surface`: triangles in memory, which no option can express; give it to the session");
   settings = {};
   settings.mesh.shading.emplace().ambient = 0.5;
   EXPECT_NE(fault_of([&] { state.set(settings, DataKind::mesh); }).find("`shade`: other coefficients"),

@@ -72,7 +72,8 @@ TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("--iso 5: shows nothing, the field goes from 0.03"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("--iso 5: it shows nothing, because the field's values are from 0.03"), std::string::npos)
+      << run.err;
 }
 
 // It changes the meaning of the image.

@@ -231,7 +231,7 @@ TEST(MeshShading, IsRefusedWhereItCannotBe) {
   refused(settings, "`light`: the direction to the light has no length");
   settings = shaded();
   settings.mesh.shading->specular = -1;
-  refused(settings, "`shade`: the parts of the light");
+  refused(settings, "`shade`: the components of the lighting");
 }
 
 }  // namespace

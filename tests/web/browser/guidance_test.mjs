@@ -77,7 +77,7 @@ test("the custom shape is stated and cannot be chosen", async () => {
 
 test("of a logarithm it is said what becomes of values that have none", async () => {
   await page.getByLabel("Log values").check();
-  await page.getByText(/^Values of 0 and below count as \S+, the smallest positive one found, for “Log values”\.$/).waitFor({ state: "visible" });
+  await page.getByText(/^Values of 0 and below are treated as \S+, the smallest positive value found, for “Log values”\.$/).waitFor({ state: "visible" });
   await page.getByLabel("Log values").uncheck();
   await page.locator("#panel .warning", { hasText: "Values of 0 and below" }).waitFor({ state: "hidden" });
   await at_rest(page);
@@ -108,7 +108,7 @@ test("surfaces that the file names are offered", async () => {
 
 test("errors and notes name the page's controls", async () => {
   await change({ threshold: "5,1" });
-  const alert = page.getByRole("alert").filter({ hasText: "“Threshold”: '5,1' does not ascend" });
+  const alert = page.getByRole("alert").filter({ hasText: "“Threshold”: the numbers of '5,1' are not in ascending order" });
   await alert.waitFor();
   await alert.getByRole("button", { name: "Undo" }).click();
   await at_rest(page);

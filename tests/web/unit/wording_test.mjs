@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { controls, in_page_words, sentence_of } from "../../../server/web/wording.js";
 
 test("options are named as the page's controls", () => {
-  assert.equal(in_page_words("--threshold: '5,1' does not ascend; write the smaller number first"), "“Threshold”: '5,1' does not ascend; write the smaller number first");
+  assert.equal(in_page_words("--threshold: the numbers of '5,1' are not in ascending order; write the smaller number first"), "“Threshold”: the numbers of '5,1' are not in ascending order; write the smaller number first");
   assert.equal(in_page_words("1 side set is left out: 'inlet' (--surface shows it)"), "1 side set is left out: 'inlet' (“Surface” shows it)");
   assert.equal(in_page_words("use --smooth, or a --field with values at points"), "use “Smooth”, or a “Field” with values at points");
   assert.equal(in_page_words("state: --color-bar-title requires --color-bar; see `tessera render --help-all`"), "state: “Bar's title” requires “Colour bar”");
