@@ -22,8 +22,8 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
 void check(cairo_status_t status, const std::filesystem::path& file) {
   if (status != CAIRO_STATUS_SUCCESS)
     throw Error(ErrorCode::system_failure,
-                fmt::format("{}: the figure could not be drawn: {}; try the other of .svg and .png", file.string(),
-                            cairo_status_to_string(status)));
+                fmt::format("{}: the figure could not be drawn: {}; try .png instead of .svg, or .svg instead of .png",
+                            file.string(), cairo_status_to_string(status)));
 }
 
 std::string lower_extension(const std::filesystem::path& file) { return lower_case(file.extension().string()); }
@@ -84,7 +84,8 @@ void Canvas::upward_text(double x, double y, const std::string& label, double si
 void check_figure_path(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
   if (extension != ".svg" && extension != ".png")
-    throw bad_input(fmt::format("{}: a figure's name ends in .svg or .png; choose one", file.string()));
+    throw bad_input(
+        fmt::format("{}: the name of a figure must end in .svg or .png; choose one of them", file.string()));
 }
 
 void write_drawing(double width, double height, const std::filesystem::path& file,

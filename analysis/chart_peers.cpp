@@ -24,10 +24,10 @@ Image read_pfm(const std::filesystem::path& file, ImageSize size) {
   const auto begin = static_cast<std::size_t>(head.tellg()) + 1;
   const auto values = 3 * static_cast<std::size_t>(std::max(width, 0)) * static_cast<std::size_t>(std::max(height, 0));
   if (!head || magic != "PF" || scale >= 0 || begin + 4 * values != bytes.size())
-    throw bad_input(fmt::format("{}: is not a colour .pfm of little endian; write PF, size, -1.0", file.string()));
+    throw bad_input(fmt::format("{}: it is not a little-endian colour .pfm; write PF, size, -1.0", file.string()));
   if (width != size.width || height != size.height)
-    throw bad_input(fmt::format("{}: is {}x{}, the chart {}x{}; render both at one size", file.string(), width, height,
-                                size.width, size.height));
+    throw bad_input(fmt::format("{}: it is {}x{} pixels, but the chart is {}x{}; render both at the same size",
+                                file.string(), width, height, size.width, size.height));
   Image image(size);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {

@@ -99,8 +99,8 @@ class Figure {
 
   void draw(Canvas& canvas) const {
     canvas.rectangle(0, 0, width(), height(), 0xffffff);
-    canvas.upward_text(18, above + plot_height / 2, fmt::format("time a frame, {}, average over processes", unit_name_),
-                       11);
+    canvas.upward_text(18, above + plot_height / 2,
+                       fmt::format("time per frame, {}, average over processes", unit_name_), 11);
     double x = left;
     for (std::size_t i = 0; i < panels_.size(); ++i) {
       draw_panel(canvas, i, x);

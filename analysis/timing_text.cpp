@@ -53,11 +53,11 @@ std::string head(const RunTime& run) {
   if (!of.exchange.empty()) text += fmt::format("; exchange {}", of.exchange);
   if (!of.rasterizer.empty()) text += fmt::format("; {}", of.rasterizer);
   if (!of.integrator.empty()) text += fmt::format("; {}", of.integrator);
-  text += fmt::format("\n  {:.3f} s for the frames, {:.1f} ms a frame", run.elapsed_us * 1e-6,
+  text += fmt::format("\n  {:.3f} s for the frames, {:.1f} ms per frame", run.elapsed_us * 1e-6,
                       run.elapsed_us * 1e-3 / run.frames);
   if (run.kilotets_per_second) text += fmt::format(", {:.0f} kTets/s", *run.kilotets_per_second);
   if (of.ranks > run.ranks)
-    text += fmt::format("\n  the trace holds {} of the run's {} processes", run.ranks, of.ranks);
+    text += fmt::format("\n  the trace contains {} of the run's {} processes", run.ranks, of.ranks);
   return text + "\n";
 }
 
@@ -68,7 +68,7 @@ std::string role_table(const RunTime& run, const RoleTime& role) {
   std::string text = fmt::format("\n{}: {}, {} a frame; {:.2f} threads busy\n", title(role.role),
                                  count(static_cast<std::uint64_t>(role.processes), "process", "processes"), unit.name,
                                  role.busy_threads);
-  if (!role.has_frames) text += "  no spans of frames: taken as one, from the first span to the last\n";
+  if (!role.has_frames) text += "  no spans of frames: the time from the first span to the last counts as one frame\n";
   text += fmt::format("  {:<11}{:>10}{:>10}{:>9}", "stage", several ? "average" : "wall", "share", "cpu");
   text += several ? fmt::format("{:>11}{:>9}\n", "worst", "on rank") : "\n";
   const auto line = [&](const StageTime& stage) {
@@ -142,7 +142,7 @@ std::string overlap_text(const RunTime& run) {
     line("  taken in by compositors", overlap.received_before_projected, overlap.received_before_frame_end);
   }
   if (overlap.frames > 0)
-    text += fmt::format("  {} of {} frames began projecting before the one before was composited, {} of the time\n",
+    text += fmt::format("  {} of {} frames began projecting before the previous frame was composited, {} of the time\n",
                         overlap.frames_overlapping, overlap.frames,
                         percent(run.elapsed_us > 0 ? overlap.overlapping_us / run.elapsed_us : 0));
   return text.empty() ? "" : "\nOverlap\n" + text;

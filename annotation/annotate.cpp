@@ -85,9 +85,9 @@ void draw(const Image& picture, const Annotation& annotation, const View& view, 
   const Screen screen(view);
   if (picture.size != view.size ||
       picture.rgba.size() != 4 * std::size_t(view.size.width) * std::size_t(view.size.height))
-    throw bad_input(
-        fmt::format("annotation: the image has {}x{} pixels, its view {}x{}; give the view it was rendered of",
-                    picture.size.width, picture.size.height, view.size.width, view.size.height));
+    throw bad_input(fmt::format(
+        "annotation: the image has {}x{} pixels, but its view {}x{}; give the view from which the image was rendered",
+        picture.size.width, picture.size.height, view.size.width, view.size.height));
   const Typeface typeface(text_size(annotation.style, view.size));
   const Ink ink(annotation.style);
   const Sheet sheet = sketched(annotation, screen, typeface, box, function);
@@ -136,9 +136,10 @@ void validate(const Annotation& annotation, const TransferFunction& transfer_fun
     if (!std::isfinite(low) || !std::isfinite(high) || low > high)
       throw bad_input(fmt::format("`color_bar_range` {} to {}: it must be finite and ascending", low, high));
     if (annotation.color_bar->logarithmic && !(low > 0))
-      throw bad_input(fmt::format(
-          "colour bar: its range, {} to {}, reaches 0 or less, where there are no logarithms; give `color_bar_range`",
-          low, high));
+      throw bad_input(
+          fmt::format("colour bar: its range, {} to {}, includes 0 or negative values, which have no logarithm; give "
+                      "`color_bar_range`",
+                      low, high));
   }
   annotation::Typeface(12);  // throws if there is no font
 }

@@ -118,7 +118,7 @@ class Mask {
     cairo_surface_flush(surface_.get());
     if (const cairo_status_t status = cairo_status(cairo_.get()); status != CAIRO_STATUS_SUCCESS)
       throw Error(ErrorCode::system_failure,
-                  fmt::format("annotation: Cairo fails: {}", cairo_status_to_string(status)));
+                  fmt::format("annotation: Cairo failed: {}", cairo_status_to_string(status)));
     unsigned char* pixels = cairo_image_surface_get_data(surface_.get());
     const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_.get());
     for (int y = top; y < bottom; ++y) {

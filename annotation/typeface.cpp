@@ -22,11 +22,11 @@ Typeface::Typeface(double size) : size_(size) {
   select(measure_.get());
   cairo_scaled_font_t* font = cairo_get_scaled_font(measure_.get());
   if (const cairo_status_t status = cairo_status(measure_.get()); status != CAIRO_STATUS_SUCCESS)
-    throw Error(ErrorCode::system_failure, fmt::format("annotation: Cairo fails: {}", cairo_status_to_string(status)));
+    throw Error(ErrorCode::system_failure, fmt::format("annotation: Cairo failed: {}", cairo_status_to_string(status)));
   // If the machine has no font, Cairo uses a font of its own, which has only ASCII characters made of strokes.
   if (cairo_scaled_font_get_type(font) == CAIRO_FONT_TYPE_USER)
     throw Error(ErrorCode::system_failure,
-                "annotation: no font is found; install one that fontconfig knows (Debian: fonts-dejavu-core)");
+                "annotation: no font was found; install one that fontconfig can find (Debian: fonts-dejavu-core)");
   cairo_font_extents_t extents;
   cairo_font_extents(measure_.get(), &extents);
   ascent_ = extents.ascent;

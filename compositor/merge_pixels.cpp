@@ -16,7 +16,7 @@ class PixelMerger final : public TileMerger {
     if (part.kind != exchange::RecordKind::pixels || !pixels_.empty())
       throw scene::Error(
           scene::ErrorCode::system_failure,
-          fmt::format("exchange: tile {} was received whole and then again; all ranks must run the same program",
+          fmt::format("exchange: tile {} was received again after it was complete; all ranks must run the same program",
                       part.tile));
     const auto bytes = part.records.bytes();
     pixels_.assign(bytes.begin(), bytes.end());

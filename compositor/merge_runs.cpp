@@ -46,8 +46,9 @@ class RunMerger final : public TileMerger {
       return;
     }
     if (context_.lattice == nullptr || context_.table == nullptr)
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         "exchange: runs on a lattice without one; all ranks must run the same program");
+      throw scene::Error(
+          scene::ErrorCode::system_failure,
+          "exchange: received runs on a lattice that does not exist; all ranks must run the same program");
     if (part.segments || !part.ascending) push_records(part, !part.ascending);
     if (!part.ascending) return;
     streams_.emplace_back(part);
@@ -245,7 +246,7 @@ class RunMerger final : public TileMerger {
     const std::uint32_t number = projection::crossing_of(segment.scalar_front).number;
     if (context_.surfaces == nullptr || number >= context_.surfaces->on_lattice_by_number().size())
       throw scene::Error(scene::ErrorCode::system_failure,
-                         "exchange: a surface that does not exist; all ranks must run the same program");
+                         "exchange: received a surface that does not exist; all ranks must run the same program");
     return context_.surfaces->on_lattice_by_number()[number];
   }
 

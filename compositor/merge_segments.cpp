@@ -288,7 +288,7 @@ std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, con
 std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect) {
   if (context.lattice == nullptr || context.table == nullptr)
     throw scene::Error(scene::ErrorCode::system_failure,
-                       "exchange: lattice segments without a lattice; all ranks must run the same program");
+                       "exchange: received lattice segments without a lattice; all ranks must run the same program");
   return std::make_unique<WindowMerger>(context, rect);
 }
 

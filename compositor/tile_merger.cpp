@@ -48,9 +48,9 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
     case exchange::RecordKind::cells:  // only for devices
       break;
   }
-  throw scene::Error(
-      scene::ErrorCode::system_failure,
-      fmt::format("exchange: records of unknown kind {}; all ranks must run the same program", static_cast<int>(kind)));
+  throw scene::Error(scene::ErrorCode::system_failure,
+                     fmt::format("exchange: received records of unknown kind {}; all ranks must run the same program",
+                                 static_cast<int>(kind)));
 }
 
 }  // namespace tessera::compositor

@@ -66,11 +66,12 @@ std::vector<Recipe> recipes() {
        }},
       {{"graded",
         "voxels that shrink towards the centre",
-        {{"n", 32, "voxels a side, even"}, {"volume_ratio", 1e6, "largest over smallest cell, 1 .. 1e15"}}},
+        {{"n", 32, "voxels per side, an even number"},
+         {"volume_ratio", 1e6, "ratio of the largest to the smallest cell, 1 .. 1e15"}}},
        [](const Values& v) { return graded(v.whole("n"), v.real("volume_ratio")); }},
       {{"slivers",
         "voxels with nearly flat tets between layers",
-        {{"n", 16, "voxels a side"}, {"aspect", 1e4, "sliver width over height, n * n .. 1e15"}}},
+        {{"n", 16, "voxels a side"}, {"aspect", 1e4, "ratio of a sliver's width to its height, n * n .. 1e15"}}},
        [](const Values& v) { return slivers(v.whole("n"), v.real("aspect")); }},
       {{"stack",
         "a pile of thin cells behind a few pixels, in a shallow plate",
@@ -80,13 +81,13 @@ std::vector<Recipe> recipes() {
        [](const Values& v) { return ball(v.whole("levels")); }},
       {{"annulus",
         "a thick ring: not convex, one hole",
-        {{"n", 64, "hexahedra round it"}, {"seam", 0, "1: close it with coincident vertices"}}},
+        {{"n", 64, "hexahedra around the ring"}, {"seam", 0, "1: close the ring with coincident vertices"}}},
        [](const Values& v) { return annulus(v.whole("n"), v.flag("seam")); }},
       {{"shells",
         "concentric shells: several parts inside one another",
         {{"count", 4, "shells, 1 .. 20"}, {"levels", 3, "subdivisions of the sphere"}, {"layers", 2, "a shell"}}},
        [](const Values& v) { return shells(v.whole("count"), v.whole("levels"), v.whole("layers")); }},
-      {{"bars", "three bars that overlap in a cycle", {{"n", 16, "hexahedra a bar"}}},
+      {{"bars", "three bars that overlap in a cycle", {{"n", 16, "hexahedra per bar"}}},
        [](const Values& v) { return cyclic_bars(v.whole("n")); }},
       {{"tet", "one tetrahedron", {}}, [](const Values&) { return single_tet(); }},
   };
@@ -102,7 +103,7 @@ scene::TetMesh apply_common(scene::TetMesh mesh, const Values& v) {
   const int inversion = v.whole("inverted"), group = v.whole("cell_data"), levels = v.whole("subdivide");
   if (inversion < 0 || inversion > 2)
     throw scene::bad_input(fmt::format("inverted is {}; give 0 (no), 1 (all) or 2 (every other tet)", inversion));
-  if (group < 0) throw scene::bad_input(fmt::format("cell_data is {}; give 0 or the number of tets a cell", group));
+  if (group < 0) throw scene::bad_input(fmt::format("cell_data is {}; give 0 or the number of tets per cell", group));
   if (levels < 0 || levels > 5) throw scene::bad_input(fmt::format("subdivide is {}; give 0 .. 5", levels));
   if (inversion == 1) mesh = inverted(std::move(mesh), Orientation::all_inverted);
   if (inversion == 2) mesh = inverted(std::move(mesh), Orientation::every_other_inverted);
@@ -112,7 +113,7 @@ scene::TetMesh apply_common(scene::TetMesh mesh, const Values& v) {
   const double scale = v.real("scale"), offset = v.real("offset");
   if (!(scale > 0) || !std::isfinite(scale) || !std::isfinite(offset))
     throw scene::bad_input(
-        fmt::format("scale {} and offset {}; both must be finite and the scale positive", scale, offset));
+        fmt::format("scale is {} and offset {}; both must be finite, and the scale positive", scale, offset));
   if (scale != 1 || offset != 0) mesh = transformed(std::move(mesh), scale, glm::dvec3(offset));
   return mesh;
 }
@@ -128,10 +129,10 @@ std::vector<Generator> generators() {
 std::vector<GeneratorParameter> common_parameters() {
   return {{"inverted", 0, "1: all tets left-handed, 2: every other one"},
           {"cell_data", 0, "k > 0: average the field over cells of k tets"},
-          {"subdivide", 0, "times every tet is cut into eight"},
+          {"subdivide", 0, "number of times that every tet is cut into eight"},
           {"shuffle", 0, "a seed > 0: tets and vertices in random order"},
           {"scale", 1, "multiplies coordinates"},
-          {"offset", 0, "is added to every coordinate"}};
+          {"offset", 0, "added to every coordinate"}};
 }
 
 std::map<std::string, double> with_defaults(const std::string& kind, const std::vector<GeneratorParameter>& known,

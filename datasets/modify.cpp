@@ -34,8 +34,8 @@ TetMesh inverted(TetMesh mesh, Orientation orientation) {
 TetMesh with_cell_data(TetMesh mesh, int tets_per_cell) {
   const auto group = static_cast<std::size_t>(std::max(tets_per_cell, 1));
   if (tets_per_cell < 1 || mesh.tets.size() % group != 0)
-    throw scene::bad_input(
-        fmt::format("{} tets do not make cells of {}; give a divisor", mesh.tets.size(), tets_per_cell));
+    throw scene::bad_input(fmt::format("{} tets cannot be grouped into cells of {} tets; give a divisor",
+                                       mesh.tets.size(), tets_per_cell));
   if (mesh.association == Association::cell) return mesh;
   std::vector<double> scalars(mesh.tets.size());
   mesh.original_cell.resize(mesh.tets.size());
@@ -110,7 +110,8 @@ TetMesh subdivided(const TetMesh& mesh) {
   }
   const std::uint64_t vertices = old_vertices + first_edge.back();
   if (vertices > std::numeric_limits<std::uint32_t>::max())
-    throw scene::bad_input(fmt::format("subdivision would make {} vertices; the most is 4294967295", vertices));
+    throw scene::bad_input(fmt::format(
+        "subdivision would make {} vertices, but at most 4294967295 are supported; subdivide less", vertices));
 
   TetMesh fine;
   fine.association = mesh.association;

@@ -37,12 +37,13 @@ struct Kind {
   int points;  ///< the default
 };
 constexpr std::array<Kind, 5> kinds{{
-    {"ripples", "volume of a smooth field on [-1, 1]^3, as the benchmarks use it", smooth_field, 64},
-    {"radial", "volume that decreases from its middle to its corners", radial_field, 64},
-    {"head", "volume of a skull in a case, about half of it empty: show values above 0.25", head_field, 64},
-    {"turbulence", "volume of two fluids that mix, rough everywhere: 0.3 to 0.7 shows the region between",
+    {"ripples", "volume of a smooth field on [-1, 1]^3, which the benchmarks use", smooth_field, 64},
+    {"radial", "volume whose values decrease from its center to its corners", radial_field, 64},
+    {"head", "volume of a skull in a case, about half of it empty: values above 0.25 show the skull", head_field, 64},
+    {"turbulence",
+     "volume of two fluids that mix, rough everywhere: values from 0.3 to 0.7 show the region between them",
      turbulence_field, 64},
-    {"checker", "volume that alternates 0 and 1 from point to point", nullptr, 16},
+    {"checker", "volume whose values alternate between 0 and 1 from point to point", nullptr, 16},
 }};
 
 class ComputedVolume final : public scene::SampleSource {
@@ -92,7 +93,8 @@ class ComputedVolume final : public scene::SampleSource {
 std::vector<Generator> volume_generators() {
   std::vector<Generator> generators;
   for (const Kind& kind : kinds) {
-    generators.push_back({kind.name, kind.help, {{"n", static_cast<double>(kind.points), "points a side, 2 to 4096"}}});
+    generators.push_back(
+        {kind.name, kind.help, {{"n", static_cast<double>(kind.points), "points per side, 2 to 4096"}}});
     if (kind.field != nullptr)
       generators.back().parameters.push_back({"bits", 32, "8 or 16: whole numbers; 32: floats"});
   }
@@ -105,7 +107,7 @@ std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
   const auto generator = std::find_if(known.begin(), known.end(), [&](const Generator& g) { return g.name == kind; });
   if (generator == known.end())
     throw scene::bad_input(
-        fmt::format("generate: there is no volume '{}'; use ripples, radial, head, turbulence or checker", kind));
+        fmt::format("generate: '{}' is not a volume; use ripples, radial, head, turbulence or checker", kind));
   std::map<std::string, double> values = with_defaults(kind, generator->parameters, parameters);
   const double n = values["n"], bits = values.count("bits") > 0 ? values["bits"] : 32;
   if (!(n >= 2 && n <= most_points) || n != std::floor(n))

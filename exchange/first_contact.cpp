@@ -42,8 +42,8 @@ scene::Error differ(int rank, int size, std::string_view own, std::string_view o
     return at < words.size() ? fmt::format("'{}'", words[at]) : "nothing";
   };
   return scene::bad_input(fmt::format(
-      "argument {}: rank {} of {} was given {} where the first was given {}; give all ranks the same arguments", at + 1,
-      rank, size, word(theirs), word(ours)));
+      "argument {}: rank {} of {} was given {} where the first rank was given {}; give all ranks the same arguments",
+      at + 1, rank, size, word(theirs), word(ours)));
 }
 
 class Contact {

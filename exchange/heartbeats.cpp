@@ -77,7 +77,7 @@ void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>&
     lost_ = {notice.rank,
              {scene::ErrorCode::system_failure,
               fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; finished "
-                          "images stay, and the same command with `resume` goes on from there",
+                          "images are kept, and the same command with `resume` continues from there",
                           name, seconds(notice.silent))}};
     return;
   }

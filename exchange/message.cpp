@@ -29,14 +29,14 @@ MessageReader::MessageReader(std::span<const std::byte> message, int from) : Rec
   const auto header = take<MessageHeader>();
   if (header.magic != wire_magic) refuse("has an unknown wire version");
   if (header.version != wire_version)
-    refuse(fmt::format("is of wire version {}, this rank's are of version {}", header.version, wire_version));
+    refuse(fmt::format("has wire version {}, but this rank uses version {}", header.version, wire_version));
   kind_ = header.kind;
 }
 
 MessageReader::MessageReader(std::span<const std::byte> message, int from, MessageKind awaited)
     : MessageReader(message, from) {
   if (kind_ != awaited)
-    refuse(fmt::format("is of kind {}, kind {} was expected", static_cast<int>(kind_), static_cast<int>(awaited)));
+    refuse(fmt::format("is of kind {}, but kind {} was expected", static_cast<int>(kind_), static_cast<int>(awaited)));
 }
 
 void MessageReader::refuse_kind() const {

@@ -289,7 +289,8 @@ void take_pixels(RecordReader& reader, scene::Image& image, const PixelRect& rec
     widest = std::max<unsigned>(widest, widths[i]);
   }
   if (widest > 32) reader.refuse("packs a pixel's value into more than 32 bits");
-  if (packed.size() != count + (bits + 31) / 32 * word_bytes) reader.refuse("has other pixels than its widths state");
+  if (packed.size() != count + (bits + 31) / 32 * word_bytes)
+    reader.refuse("has a number of pixels that does not match its widths");
   static constexpr std::byte nothing[word_bytes] = {};  // for a rectangle whose differences are all 0
   Streams<const std::byte> from{nothing, nothing};
   if (bits > 0) from = {packed.data() + count, packed.data() + packed.size() - word_bytes};

@@ -43,12 +43,10 @@ std::uint64_t available_memory() {
 }
 
 scene::Error no_shared_memory(std::size_t bytes) {
-  return {
-      scene::ErrorCode::system_failure,
-      fmt::format(
-          "memory ran out: ranks of this machine share {} MiB more than it has; leave out sharing (`without`), or use "
-          "more machines",
-          (bytes >> 20) + 1)};
+  return {scene::ErrorCode::system_failure,
+          fmt::format("memory ran out: the ranks of this machine share {} MiB more than it has; switch off sharing "
+                      "(`without`), or use more machines",
+                      (bytes >> 20) + 1)};
 }
 
 #ifdef __linux__

@@ -70,8 +70,8 @@ void answer_termination(Transport& transport, const std::string& program, const 
                         void (*before_end)() noexcept) {
   remedy_of_run = remedy;
   before_end_of_run = before_end;
-  line_of_run = fmt::format("{}: the run was ended from outside or has lost a rank (the launcher reports which); {}\n",
-                            program, remedy);
+  line_of_run = fmt::format(
+      "{}: the run was ended from outside or has lost a rank (the launcher reports which one); {}\n", program, remedy);
   speaks_for_the_lost = share_one_line(transport);
   launchers = find_launchers();
   struct sigaction action {};

@@ -41,7 +41,7 @@ void validate(const Camera& camera) {
   }
   const glm::dvec3 direction = camera.focal_point - camera.position;
   if (!(largest(direction) > 0))
-    throw bad_input("focal_point equals position, the camera has no direction; move one of them");
+    throw bad_input("focal_point equals position, so the camera has no direction; move one of them");
   if (!(largest(camera.view_up) > 0)) throw bad_input("view_up is zero; give the direction that points up");
   if (!(glm::length(glm::cross(unit(direction), unit(camera.view_up))) > 1e-9))
     throw bad_input("view_up is parallel to the view direction; turn it away from it");
@@ -49,13 +49,13 @@ void validate(const Camera& camera) {
     if (!(camera.parallel_scale > 0) || !std::isfinite(camera.parallel_scale))
       throw bad_input(fmt::format("parallel_scale is {}; it must be positive", camera.parallel_scale));
     if (!has_pixels(camera.parallel_scale))
-      throw bad_input(fmt::format("parallel_scale is {}; pixels of that size are not numbers, give 1e-300 to 1e300",
+      throw bad_input(fmt::format("parallel_scale is {}; pixels of that size cannot be computed, give 1e-300 to 1e300",
                                   camera.parallel_scale));
   } else if (!(camera.view_angle > 0 && camera.view_angle < 180)) {
     throw bad_input(fmt::format("view_angle is {}; it must be above 0 and below 180 degrees", camera.view_angle));
   } else if (!has_pixels(std::tan(camera.view_angle * (pi / 360)))) {
-    throw bad_input(
-        fmt::format("view_angle is {}; pixels of that size are not numbers, give at least 1e-297", camera.view_angle));
+    throw bad_input(fmt::format("view_angle is {}; pixels of that size cannot be computed, give at least 1e-297",
+                                camera.view_angle));
   }
   if (camera.clipping_range) {
     const auto [near_distance, far_distance] = *camera.clipping_range;

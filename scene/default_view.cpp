@@ -173,7 +173,8 @@ Camera zoomed(Camera camera, double zoom) {
   try {
     validate(camera);
   } catch (const Error&) {
-    throw bad_input(fmt::format("`zoom` is {}: pixels of that size are not numbers; give one nearer to 1", zoom));
+    throw bad_input(
+        fmt::format("`zoom` is {}: pixels of that size cannot be computed; give a value nearer to 1", zoom));
   }
   return camera;
 }
@@ -241,7 +242,7 @@ Camera view_of_box(const Box& box, ImageSize size, const ViewRequest& request, P
 Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const ViewRequest& request) {
   check(request);
   if (request.view != StandardView::automatic || request.up)
-    throw bad_input("`view` and `up`: the camera has them already; leave them out");
+    throw bad_input("`view` and `up`: the camera already defines them; leave them out");
   Camera seen = camera;
   if (request.azimuth != 0 || request.elevation != 0) {
     const glm::dvec3 offset = camera.position - camera.focal_point;

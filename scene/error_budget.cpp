@@ -23,8 +23,9 @@ void check_accuracy(double accuracy) {
   if (!(accuracy > 0) || !std::isfinite(accuracy))
     throw bad_input(fmt::format("`accuracy` {}: it must be positive", accuracy));
   if (accuracy < error_budget::least_accuracy)
-    throw bad_input(fmt::format("`accuracy` {}: images are of 32-bit numbers, which keep {} at best; give no less",
-                                accuracy, error_budget::least_accuracy));
+    throw bad_input(fmt::format(
+        "`accuracy` {}: images consist of 32-bit floats, which are accurate to {} at best; give this or more", accuracy,
+        error_budget::least_accuracy));
 }
 
 }  // namespace tessera::scene

@@ -101,28 +101,28 @@ void validate(const Grid& grid, const std::string& source) {
     const char name = "xyz"[axis];
     const std::vector<double>& c = g.coordinates[axis];
     if (g.points[axis] < 2)
-      fail(fmt::format("the grid has {} point{} along {}, a volume needs two or more along every axis", g.points[axis],
-                       g.points[axis] == 1 ? "" : "s", name));
+      fail(fmt::format("the grid has {} point{} along {}, but a volume needs two or more along every axis",
+                       g.points[axis], g.points[axis] == 1 ? "" : "s", name));
     if (__builtin_mul_overflow(count, g.points[axis], &count) || count > (std::int64_t{1} << 59))
       fail(fmt::format("the grid has {} x {} x {} points, more than can be addressed", g.points[0], g.points[1],
                        g.points[2]));
     if (c.empty() && !(g.spacing[static_cast<int>(axis)] > 0 && std::isfinite(g.spacing[static_cast<int>(axis)])))
-      fail(fmt::format("the spacing along {} is {}, it must be above 0", name, g.spacing[static_cast<int>(axis)]));
+      fail(fmt::format("the spacing along {} is {}, but must be above 0", name, g.spacing[static_cast<int>(axis)]));
     if (!c.empty() && c.size() != static_cast<std::size_t>(g.points[axis]))
-      fail(fmt::format("there are {} coordinates along {} for {} points", c.size(), name, g.points[axis]));
+      fail(fmt::format("there are {} coordinates along {}, but {} points", c.size(), name, g.points[axis]));
     for (std::size_t i = 0; i < c.size(); ++i)
       if (!std::isfinite(c[i]) || (i > 0 && !(c[i] > c[i - 1])))
-        fail(fmt::format("coordinate {} along {} is {}, they must be finite and increase", i, name, c[i]));
+        fail(fmt::format("coordinate {} along {} is {}, but coordinates must be finite and increasing", i, name, c[i]));
   }
   if (!finite(g.origin)) fail(fmt::format("the origin is {} {} {}", g.origin.x, g.origin.y, g.origin.z));
   const glm::dmat3& d = g.direction;
   for (int column = 0; column < 3; ++column)
     if (!finite(d[column]) || std::abs(glm::length(d[column]) - 1) > 1e-9)
-      fail(fmt::format("axis {} has the direction {} {} {}, not of length one", "xyz"[column], d[column].x, d[column].y,
-                       d[column].z));
+      fail(fmt::format("axis {} has the direction {} {} {}, which is not of length one", "xyz"[column], d[column].x,
+                       d[column].y, d[column].z));
   if (!(std::abs(glm::determinant(d)) > 1e-6)) fail("the directions of its axes are in one plane");
   const Box box = bounds(g);
-  if (!finite(box.low) || !finite(box.high)) fail("its corners are beyond the range of numbers");
+  if (!finite(box.low) || !finite(box.high)) fail("its corners are too far away to be represented as numbers");
   if (!std::isfinite(grid.scale) || grid.scale == 0 || !std::isfinite(grid.shift))
     fail(fmt::format("samples are scaled by {} and shifted by {}", grid.scale, grid.shift));
 }

@@ -81,8 +81,8 @@ void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint6
   const auto needed = static_cast<std::uint64_t>(samples) * tuple;
   if (bytes < needed)
     throw bad_input(
-        fmt::format("{}: {} samples of {} bytes are {} bytes, {} are there; the file is truncated or its "
-                    "size is stated wrongly, write it again",
+        fmt::format("{}: {} samples of {} bytes need {} bytes, but it has {}; the file is truncated or its size is "
+                    "stated incorrectly, write it again",
                     source, samples, tuple, needed, bytes));
 }
 
@@ -163,11 +163,11 @@ void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::s
   const GridIndex n = geometry().samples();
   for (std::size_t a = 0; a < 3; ++a)
     if (box.low[a] < 0 || box.high[a] > n[a] || box.low[a] > box.high[a])
-      throw bad_input(fmt::format("{}: samples {} to {} along {} are asked for, it has {}; please report", source_,
-                                  box.low[a], box.high[a], "xyz"[a], n[a]));
+      throw bad_input(fmt::format("{}: samples {} to {} along {} were requested, but it has {}; please report this",
+                                  source_, box.low[a], box.high[a], "xyz"[a], n[a]));
   if (box.count() == 0) return;
   if (layout.type != grid_.type && !is_float(layout.type))
-    throw bad_input(fmt::format("{}: {} samples are asked for as {}; please report", source_, name_of(grid_.type),
+    throw bad_input(fmt::format("{}: {} samples were requested as {}; please report this", source_, name_of(grid_.type),
                                 name_of(layout.type)));
   SampleLayout pitched = layout;
   if (pitched.row_pitch == 0) pitched.row_pitch = box.extent(0);
@@ -176,8 +176,8 @@ void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::s
       (box.extent(2) - 1) * pitched.slice_pitch + (box.extent(1) - 1) * pitched.row_pitch + box.extent(0);
   if (pitched.row_pitch < box.extent(0) || pitched.slice_pitch < pitched.row_pitch ||
       static_cast<std::uint64_t>(needed) * size_of(layout.type) > destination.size())
-    throw bad_input(
-        fmt::format("{}: {} samples do not fit {} bytes; please report", source_, needed, destination.size()));
+    throw bad_input(fmt::format("{}: {} samples do not fit into {} bytes; please report this", source_, needed,
+                                destination.size()));
   read_samples(box, pitched, destination.data());
 }
 

@@ -26,7 +26,8 @@ void validate(const Selection& selection) {
     if (!scene::finite(h.point) || !scene::finite(h.normal))
       throw scene::bad_input("`clip`: a plane's numbers are not all finite; give a point and a normal");
     if (h.normal == glm::dvec3(0))
-      throw scene::bad_input("`clip`: a normal of 0,0,0 points nowhere; give the side to keep");
+      throw scene::bad_input(
+          "`clip`: a normal of 0,0,0 has no direction; give a normal that points to the side to keep");
   }
   if (!selection.threshold) return;
   const auto [low, high] = *selection.threshold;

@@ -32,8 +32,8 @@ std::optional<Error> thread_fault(const std::exception& fault) {
   const bool of_tbb = std::string_view(fault.what()).starts_with("pthread_create has failed");
   if (!of_std && !of_tbb) return std::nullopt;
   return Error(ErrorCode::system_failure,
-               fmt::format("threads: the system starts no more than the {} of this process; lower `threads`, or raise "
-                           "the limits on memory and processes (ulimit -v, ulimit -u)",
+               fmt::format("threads: the system does not start more threads than the {} of this process; lower "
+                           "`threads`, or raise the limits on memory and processes (ulimit -v, ulimit -u)",
                            threads_running()));
 }
 
@@ -49,7 +49,7 @@ Error error_of(const std::exception_ptr& thrown) {
     return error;
   } catch (const std::bad_alloc&) {
     return {ErrorCode::system_failure,
-            "memory: this run needs more than there is; make `size` smaller or use a machine with more"};
+            "memory: this run needs more memory than is available; make `size` smaller or use a machine with more"};
   } catch (const std::exception& fault) {
     if (const auto of_threads = scene::thread_fault(fault)) return *of_threads;
     return {ErrorCode::system_failure, fmt::format("unexpected: {}; please report", fault.what())};

@@ -33,7 +33,7 @@ void check_paint(const std::string& name, const std::optional<glm::dvec3>& color
   if (!(opacity > 0 && opacity <= 1))
     throw bad_input(fmt::format("{}: the opacity {} is not above 0 and at most 1", name, opacity));
   if (color && !(is_light(color->x) && is_light(color->y) && is_light(color->z)))
-    throw bad_input(fmt::format("{}: its colour must be 0 or more, and finite", name));
+    throw bad_input(fmt::format("{}: the components of its colour must be finite and 0 or more", name));
 }
 
 void check_triangles(const tessera::TriangleMesh& mesh) {
@@ -45,10 +45,11 @@ void check_triangles(const tessera::TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle)
       if (v >= mesh.points.size())
-        throw bad_input(fmt::format("`surface`: a triangle uses point {} of {}; correct it", v, mesh.points.size()));
+        throw bad_input(fmt::format("`surface`: a triangle uses point {}, but there are only {} points; correct it", v,
+                                    mesh.points.size()));
   if (!mesh.values.empty() && mesh.values.size() != mesh.points.size())
-    throw bad_input(fmt::format("`surface`: has {} values for {} points; give one a point, or none", mesh.values.size(),
-                                mesh.points.size()));
+    throw bad_input(fmt::format("`surface`: it has {} values for {} points; give one value per point, or none",
+                                mesh.values.size(), mesh.points.size()));
   if (!std::ranges::all_of(mesh.values, [](double v) { return std::isfinite(v); }))
     throw bad_input("`surface`: a value at its points is not finite; correct it, or leave the values out");
 }
@@ -68,13 +69,13 @@ void validate(const Surfaces& surfaces) {
   for (const BoundarySurface& boundary : surfaces.boundary)
     check_paint("`surface` boundary", boundary.color, boundary.opacity);
   for (const TriangleSurface& surface : surfaces.triangles) {
-    if (surface.mesh == nullptr) throw bad_input("`surface`: has no triangles; give it some, or leave it out");
+    if (surface.mesh == nullptr) throw bad_input("`surface`: it has no triangles; give it triangles, or leave it out");
     check_paint("`surface`", surface.color, surface.opacity);
     check_triangles(*surface.mesh);
   }
   const SurfaceLight& light = surfaces.light;
   for (const double part : {light.ambient, light.diffuse, light.specular, light.shininess})
-    if (!is_light(part)) throw bad_input("surfaces: the parts of their light must be 0 or more, and finite");
+    if (!is_light(part)) throw bad_input("surfaces: the components of their lighting must be finite and 0 or more");
 }
 
 SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& function) : light_(surfaces.light) {

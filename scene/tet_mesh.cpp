@@ -80,18 +80,19 @@ void validate(const TetMeshView& mesh, const std::string& source) {
   const bool point = mesh.association == Association::point;
   const std::size_t expected = point ? mesh.positions.size() : mesh.tets.size();
   if (mesh.scalars.size() != expected)
-    throw bad_input(fmt::format("{}: {} scalars for {} {}; give one each", source, mesh.scalars.size(), expected,
-                                point ? "points" : "cells"));
+    throw bad_input(fmt::format("{}: there are {} scalars for {} {}; give one for each", source, mesh.scalars.size(),
+                                expected, point ? "points" : "cells"));
   if (!mesh.original_cell.empty() && mesh.original_cell.size() != mesh.tets.size())
-    throw bad_input(
-        fmt::format("{}: {} original cell numbers for {} tets", source, mesh.original_cell.size(), mesh.tets.size()));
+    throw bad_input(fmt::format("{}: there are {} original cell numbers for {} tets", source, mesh.original_cell.size(),
+                                mesh.tets.size()));
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (!point && !std::isfinite(mesh.scalars[t]))
       throw bad_input(fmt::format("{}: cell {} has a scalar that is not finite; blank it", source, mesh.cell_of(t)));
     for (const std::uint32_t v : mesh.tets[t]) {
       if (v >= mesh.positions.size())
-        throw bad_input(fmt::format("{}: cell {} uses vertex {}, the mesh has {}; write cells and points from one mesh",
-                                    source, mesh.cell_of(t), v, mesh.positions.size()));
+        throw bad_input(fmt::format(
+            "{}: cell {} uses vertex {}, but the mesh has only {} vertices; write cells and points from one mesh",
+            source, mesh.cell_of(t), v, mesh.positions.size()));
       const glm::dvec3& p = mesh.positions[v];
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         throw bad_input(

@@ -54,7 +54,7 @@ inline std::optional<std::string> note_on(const TimeStepRead& read, std::optiona
   const std::string time =
       read.step < read.times.size() ? fmt::format(", time {:.6g}", read.times[read.step]) : std::string();
   return fmt::format("time step {} of 0 to {}{}{}", read.step, read.count - 1, time,
-                     requested ? "" : ", the last by default; `time_step` all shows them as a film");
+                     requested ? "" : ", which is the last and the default; `time_step` all shows all steps as a film");
 }
 
 }  // namespace tessera::scene

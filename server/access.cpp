@@ -140,7 +140,8 @@ std::optional<std::string> Access::refusal(const Credentials& credentials) const
     const bool own = !authority.empty() && plain_authority(authority, port) == plain_authority(credentials.host, port);
     const std::string name = host_name(authority);
     const bool named = !name.empty() && std::ranges::find(allowed_, name) != allowed_.end();
-    if (!own && !named && name.empty()) return "The request comes from a page without an address, which is refused.";
+    if (!own && !named && name.empty())
+      return "The request comes from a page without an address; requests from such pages are refused.";
     if (!own && !named)
       return fmt::format(
           "The page's address, {}, is not this server's, {}; if a proxy leads from one to the other, start the server "
@@ -148,7 +149,7 @@ std::optional<std::string> Access::refusal(const Credentials& credentials) const
           authority, credentials.host, name);
   }
   if (!has_token(credentials))
-    return "The token is missing or of another run; open the whole address that `tessera serve` printed.";
+    return "The token is missing or belongs to another run; open the whole address that `tessera serve` printed.";
   return std::nullopt;
 }
 

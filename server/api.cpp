@@ -111,7 +111,7 @@ Response json_response(const Json& json) {
 }
 
 Response stopped_response() {
-  return error_response(503, "It was stopped: the server ends, or no client waits for it.");
+  return error_response(503, "The request was stopped because the server is ending or no client is waiting for it.");
 }
 
 void LongProgress::set(std::optional<double> fraction) {

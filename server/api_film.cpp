@@ -135,11 +135,11 @@ FilmPlan::FilmPlan(const Json& body) {
   if (const auto found = body.find("rate"); found != body.end()) {
     rate = found->is_number() ? found->get<double>() : 0;
     if (!(rate >= least_film_rate && rate <= most_film_rate))
-      throw bad_input(fmt::format("rate: is not a number of frames a second from {} to {}; send one", least_film_rate,
-                                  most_film_rate));
+      throw bad_input(fmt::format("rate: is not a number of frames per second from {} to {}; send such a number",
+                                  least_film_rate, most_film_rate));
   }
   if (body.contains("views") == body.contains("orbit"))
-    throw bad_input("film: it has an orbit or views, one of the two; send orbit, a number of frames, or views");
+    throw bad_input("film: it needs either an orbit or views; send orbit, a number of frames, or views");
   if (body.contains("views")) {
     views = views_of(body);
     frames = whole_number(body, "frames", static_cast<std::int64_t>(views.size()), 1, most_frames);

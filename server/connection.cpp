@@ -318,7 +318,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
       return send(make_response(request_, error_response(400, "The address cannot be read.")));
     // With two Host headers, a proxy might use the other one.
     if (request_.count(http::field::host) > 1)
-      return send(make_response(request_, error_response(400, "The request has more than one Host.")));
+      return send(make_response(request_, error_response(400, "The request has more than one Host header.")));
     const auto refused = [&](int status, const std::string& sentence) {
       send(make_response(
           request_, is_api(*path) ? error_response(status, sentence) : page_response(status, sentence_page(sentence))));
@@ -330,7 +330,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
       return refused(403, *why);
     if (!refusal && !admit()) {
       request_.keep_alive(false);
-      return refused(503, "The server has reached its limit of connections; close other pages of it.");
+      return refused(503, "The server has reached its limit of connections; close other pages that it serves.");
     }
     if (*path == "socket" && websocket::is_upgrade(request_)) return become_socket();
     if (is_api(*path))

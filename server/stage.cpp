@@ -340,15 +340,14 @@ void Stage::check_size(ImageSize size) const {
   constexpr int longest_side = 16384;
   constexpr std::uint64_t bytes_of_pixel = 24;  // bytes for a rendered and encoded pixel
   if (size.width > longest_side || size.height > longest_side)
-    throw bad_input(
-        fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller image, or render it "
-                    "by its command line",
-                    size.width, size.height, longest_side));
+    throw bad_input(fmt::format(
+        "--size: {}x{} has more than {} pixels per side; request a smaller image, or render it from the command line",
+        size.width, size.height, longest_side));
   const auto width = static_cast<std::uint64_t>(size.width), height = static_cast<std::uint64_t>(size.height);
   if (width * height * bytes_of_pixel > memory_bytes_)
     throw bad_input(
-        fmt::format("--size: {}x{} takes more memory than the server has for it; ask for a smaller image, "
-                    "or start the server with a larger --memory",
+        fmt::format("--size: {}x{} takes more memory than the server has for images; request a smaller image, or start "
+                    "the server with a larger --memory",
                     size.width, size.height));
 }
 
@@ -406,7 +405,8 @@ void Stage::execute(const Json& order) {
     return;
   }
   const auto held = find(*scene);
-  if (!held) throw Error(ErrorCode::system_failure, "server", "this rank has other data than the first", "report this");
+  if (!held)
+    throw Error(ErrorCode::system_failure, "server", "this rank has different data from the first rank", "report this");
   if (order.at("do") == "preview") return make_preview_together(state, *held);
   View view = scene->view(held->data);
   if (order.at("do") == "probe") {

@@ -24,13 +24,12 @@ std::shared_ptr<boost::asio::ssl::context> tls_context(const std::filesystem::pa
   boost::system::error_code error;
   tls->use_certificate_chain_file(certificate.string(), error);
   if (error)
-    throw bad_input(fmt::format("{}: is not a certificate in PEM that can be read ({}); give one", certificate.string(),
-                                error.message()));
+    throw bad_input(fmt::format("{}: it is not a readable PEM certificate ({}); give a PEM certificate",
+                                certificate.string(), error.message()));
   tls->use_private_key_file(key.string(), context::pem, error);
   if (error)
-    throw bad_input(
-        fmt::format("{}: is not a key in PEM that can be read and goes with {} ({}); give the certificate's",
-                    key.string(), certificate.string(), error.message()));
+    throw bad_input(fmt::format("{}: it is not a readable PEM key that belongs to {} ({}); give the certificate's key",
+                                key.string(), certificate.string(), error.message()));
   return tls;
 }
 

@@ -52,7 +52,8 @@ OutputFault::~OutputFault() = default;
 Error OutputFault::since_changed() const {
   if (code() == ErrorCode::system_failure) return *this;
   return {ErrorCode::system_failure, subject(), problem(),
-          "it could be written when the run began, see what has removed or closed the directory since"};
+          "it could be written when the run began; check whether the directory was removed or its permissions were "
+          "changed since"};
 }
 
 void check_writable(const fs::path& target) {
@@ -70,7 +71,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (S_ISDIR(present.st_mode)) fail(EISDIR, "cannot be written");
     if (!S_ISREG(present.st_mode))
       throw OutputFault(ErrorCode::bad_input, target_, "is not a regular file",
-                        "outputs are replaced as a whole, name a file");
+                        "outputs are replaced as whole files; name a file");
     check_not_read(target_);
   } else if (errno != ENOENT) {
     fail(errno, "cannot be written");

@@ -30,8 +30,8 @@ void require_possible(std::uint64_t packed, std::uint64_t count, const std::stri
   constexpr std::uint64_t best = 1040;  // deflate's best ratio of 1032, with a margin for headers
   if (count / best > packed)
     throw scene::bad_input(
-        fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
-                    "damaged, write it again",
+        fmt::format("{}: its header states {} bytes, which {} compressed bytes cannot contain; the file is truncated "
+                    "or damaged, write it again",
                     source, count, packed));
 }
 
@@ -145,13 +145,13 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
     const bool is_over = made > limit.bytes - written;
     if (is_over && !limit.stops)
       throw fail(scene::ErrorCode::bad_input,
-                 fmt::format("its {} bytes hold more than {} MiB, which is out of proportion", size, limit.bytes >> 20),
-                 "unpack it with gunzip if that is right");
+                 fmt::format("its {} bytes contain more than {} MiB, which is implausible", size, limit.bytes >> 20),
+                 "if that is correct, unpack it with gunzip");
     const auto kept = static_cast<std::size_t>(std::min<std::uint64_t>(made, limit.bytes - written));
     written += kept;
     if (written > memory)
-      throw fail(scene::ErrorCode::system_failure, fmt::format("it holds more than {} bytes inflated", memory),
-                 "inflate it to a disk, use a larger machine or a part of the data");
+      throw fail(scene::ErrorCode::system_failure, fmt::format("it contains more than {} bytes when unpacked", memory),
+                 "unpack it to a disk, use a larger machine or a part of the data");
     if (!write_all(file, out.data(), kept))
       throw fail(scene::ErrorCode::system_failure, "memory ran out", "use a larger machine or a part of the data");
     if (is_over) return written;

@@ -26,7 +26,7 @@ void PositionalFile::read(std::uint64_t at, std::byte* to, std::uint64_t count) 
     const ssize_t got = ::pread(descriptor_.get(), to, std::min(count, std::uint64_t{1} << 30), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(fmt::format("cannot be read at byte {}", at), errno);
-    if (got == 0) fail(fmt::format("has been shortened to {} bytes meanwhile", at), 0);
+    if (got == 0) fail(fmt::format("has been shortened to {} bytes while it was read", at), 0);
     at += static_cast<std::uint64_t>(got), to += got, count -= static_cast<std::uint64_t>(got);
   }
 }

@@ -85,7 +85,7 @@ std::filesystem::path ScratchFile::path() const { return fmt::format("/proc/{}/f
 void ScratchFile::fail(int error_number) const {
   throw scene::Error(
       scene::ErrorCode::bad_input, subject_,
-      fmt::format("its samples, {} unpacked, cannot be kept in {}: {}", size_in_words(bytes_), folder_.string(),
+      fmt::format("its samples, {} when unpacked, cannot be stored in {}: {}", size_in_words(bytes_), folder_.string(),
                   std::generic_category().message(error_number)),
       "free some space there, set TMPDIR to another directory, or convert it to .bricks once and render that");
 }

@@ -19,7 +19,7 @@ void DeepCollector::add(const scene::PixelRect& rect, std::vector<std::uint32_t>
   if (bytes_ > most_bytes_)
     throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("deep image, or layers of `peel`: samples take more than {} MiB; raise `memory` or "
-                                   "`deep_accuracy`, or ask for fewer layers",
+                                   "`deep_accuracy`, or request fewer layers",
                                    most_bytes_ >> 20));
   blocks_.push_back({rect, std::move(counts), std::move(samples)});
 }

@@ -110,7 +110,7 @@ class GlMerger final : public TileMerger {
         case exchange::RecordKind::lit_chains:
         case exchange::RecordKind::lit_lattice:  // devices do not light matter
           throw scene::Error(scene::ErrorCode::system_failure,
-                             "exchange: what no device takes; all ranks must run the same program");
+                             "exchange: received records that no device supports; all ranks must run the same program");
         case exchange::RecordKind::tuples: {
           const auto record = reader.take<TupleRecord>();
           check(part, record.pixel);

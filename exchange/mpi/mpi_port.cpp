@@ -25,7 +25,7 @@ void require_running() {
   MPI_Initialized(&running);
   MPI_Finalized(&ended);
   if (running == 0 || ended != 0)
-    throw scene::bad_input("communicator: MPI does not run; call MPI_Init_thread first, MPI_Finalize last");
+    throw scene::bad_input("communicator: MPI is not running; call MPI_Init_thread first, MPI_Finalize last");
 }
 
 MPI_Comm duplicate(int fortran_handle) {
@@ -34,7 +34,7 @@ MPI_Comm duplicate(int fortran_handle) {
   MPI_Query_thread(&provided);
   if (provided < MPI_THREAD_MULTIPLE)
     throw scene::bad_input(
-        "communicator: MPI was started for fewer threads than it takes; call MPI_Init_thread with MPI_THREAD_MULTIPLE");
+        "communicator: MPI was started with too little thread support; call MPI_Init_thread with MPI_THREAD_MULTIPLE");
   MPI_Comm copy = MPI_COMM_NULL;
   if (MPI_Comm_dup(MPI_Comm_f2c(fortran_handle), &copy) != MPI_SUCCESS)
     throw scene::Error(scene::ErrorCode::system_failure, "communicator: MPI cannot duplicate it");
@@ -102,7 +102,7 @@ void MpiPort::start() {
   size_ = s.size;
   if (provided < MPI_THREAD_FUNNELED)
     throw scene::Error(scene::ErrorCode::system_failure,
-                       "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
+                       "MPI: it does not support threads (MPI_THREAD_FUNNELED); use a build of MPI that does");
 }
 
 void MpiPort::send(int to, int tag, Bytes bytes) {

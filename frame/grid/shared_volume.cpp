@@ -100,9 +100,10 @@ std::unique_ptr<scene::SampleSource> bricks_at(const Place& place, const io::Inp
   try {
     return io::open_bricks(place.path, {}, file.name).source;
   } catch (const scene::Error&) {
-    throw scene::bad_input(fmt::format(
-        "{}: a rank cannot open what another has unpacked for it in {}; convert it to .bricks once and render that",
-        file.name, place.folder));
+    throw scene::bad_input(
+        fmt::format("{}: a rank cannot open the samples that another rank unpacked for it in {}; convert the volume to "
+                    ".bricks once and render that",
+                    file.name, place.folder));
   }
 }
 
@@ -111,7 +112,7 @@ std::string note_on(const io::InputFile& file, const Place& place, std::size_t r
       "{} is read as a whole: its samples are kept {}, in an unnamed file of {} in {}{}, which is removed when the run "
       "ends",
       file.path.filename().string(),
-      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, since memory may not hold them",
+      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, because they may not fit into memory",
       system::size_in_words(place.bytes), place.folder,
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }

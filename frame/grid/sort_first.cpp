@@ -81,10 +81,10 @@ class SortFirst::State {
         weights_(weights_are_given() ? settings_.balance_weights
                                      : std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)) {
     if (weights_.size() != static_cast<std::size_t>(transport.size()))
-      throw scene::bad_input(
-          fmt::format("balance: {} weights for {} processes; give one for each", weights_.size(), transport.size()));
+      throw scene::bad_input(fmt::format("balance: there are {} weights for {} processes; give one for each",
+                                         weights_.size(), transport.size()));
     if (settings_.balance_measured && weights_are_given())
-      throw scene::bad_input("`balance_weights`: they are either given or measured; leave one of the two out");
+      throw scene::bad_input("`balance_weights`: weights cannot be both given and measured; leave one of the two out");
     if (!std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
       throw scene::bad_input("balance: weights must be positive numbers");
   }

@@ -51,32 +51,35 @@ std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint6
 
 void check_shapes(const MeshArrays& a) {
   if (a.points.size() % 3 != 0)
-    throw scene::bad_input(fmt::format("mesh: {} coordinates are not three a point", a.points.size()));
+    throw scene::bad_input(fmt::format("mesh: {} coordinates are not three per point", a.points.size()));
   const std::size_t points = a.points.size() / 3;
-  if (points > 0xffffffffull) throw scene::bad_input("mesh: more than 2^32 points; give it in parts, one a rank");
+  if (points > 0xffffffffull)
+    throw scene::bad_input("mesh: more than 2^32 points are too many; give it in parts, one per rank");
   const bool as_tets = a.types.empty() && a.offsets.empty() && a.connectivity.empty();
   if (!as_tets && !a.tets.empty())
     throw scene::bad_input("mesh: cells are given twice; give tets, or types, offsets and connectivity");
   if (as_tets && a.tets.size() % 4 != 0)
-    throw scene::bad_input(fmt::format("mesh: {} corners are not four a tet", a.tets.size()));
+    throw scene::bad_input(fmt::format("mesh: {} corners are not four per tet", a.tets.size()));
   if (!as_tets && a.offsets.size() != a.types.size() + 1)
-    throw scene::bad_input(
-        fmt::format("mesh: {} offsets for {} cells; give one more than cells", a.offsets.size(), a.types.size()));
+    throw scene::bad_input(fmt::format("mesh: there are {} offsets for {} cells; give one offset more than cells",
+                                       a.offsets.size(), a.types.size()));
   if (as_tets && !(a.faces.empty() && a.face_locations.empty()))
     throw scene::bad_input("mesh: faces are given for tets; give types, offsets and connectivity of polyhedra");
   if (a.faces.empty() ? !a.face_locations.empty() : a.face_locations.size() != a.types.size())
-    throw scene::bad_input(fmt::format("mesh: {} face locations for {} cells and {} numbers of faces; give one a cell",
-                                       a.face_locations.size(), a.types.size(), a.faces.size()));
+    throw scene::bad_input(fmt::format(
+        "mesh: there are {} face locations for {} cells and {} numbers of faces; give one location per cell",
+        a.face_locations.size(), a.types.size(), a.faces.size()));
   const std::size_t cells = as_tets ? a.tets.size() / 4 : a.types.size();
   if (!a.original_cells.empty() &&
       (a.original_cells.type() != NumberType::uint64 || a.original_cells.size() != cells || !as_tets))
-    throw scene::bad_input(fmt::format("mesh: {} original cells for {} cells; give tets, and a uint64 of each",
-                                       a.original_cells.size(), cells));
+    throw scene::bad_input(
+        fmt::format("mesh: there are {} original cell numbers for {} cells; give tets, and one uint64 for each",
+                    a.original_cells.size(), cells));
   const bool of_points = a.association == Association::point;
   const std::size_t wanted = of_points ? points : cells;
   if (a.scalars.size() != wanted)
-    throw scene::bad_input(fmt::format("mesh: {} scalars for {} {}; give one each", a.scalars.size(), wanted,
-                                       of_points ? "points" : "cells"));
+    throw scene::bad_input(fmt::format("mesh: there are {} scalars for {} {}; give one for each", a.scalars.size(),
+                                       wanted, of_points ? "points" : "cells"));
 }
 
 /// Returns the arrays without a copy if they have the layout that the renderer needs.
@@ -121,8 +124,9 @@ cells::CellBlock block_of(const MeshArrays& a) {
         throw scene::bad_input(fmt::format("mesh: offset {} is {}, below the one before it, {}", i, block.offsets[i],
                                            block.offsets[i - 1]));
     if (block.offsets.back() != block.connectivity.size() || block.offsets.front() != 0)
-      throw scene::bad_input(fmt::format("mesh: offsets go from {} to {}; they must from 0 to connectivity's {}",
-                                         block.offsets.front(), block.offsets.back(), block.connectivity.size()));
+      throw scene::bad_input(
+          fmt::format("mesh: offsets go from {} to {}; they must go from 0 to the length of the connectivity, {}",
+                      block.offsets.front(), block.offsets.back(), block.connectivity.size()));
   }
   if (!a.faces.empty()) {
     block.faces = whole_numbers<std::uint32_t>(a.faces, "number of faces", 1ull << 32);

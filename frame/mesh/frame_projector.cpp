@@ -122,7 +122,8 @@ std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int t
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
     throw scene::bad_input(
-        fmt::format("`memory`: projection has {} MiB of it and needs at least {} MiB for this mesh and image; raise it",
+        fmt::format("`memory`: {} MiB of it are left for projection, which needs at least {} MiB for this mesh and "
+                    "image; raise `memory`",
                     settings.memory_bytes >> 20, (least >> 20) + 1));
   return (settings.memory_bytes - held) / static_cast<std::uint64_t>(threads);
 }

@@ -18,7 +18,7 @@ void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_by
   if (bytes > memory_bytes / 2)
     throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("`peel`: {} layers of {}x{} pixels take {} MiB, more than half of `memory`; raise "
-                                   "it, or ask for fewer layers",
+                                   "`memory`, or request fewer layers",
                                    peel.layers, size.width, size.height, bytes >> 20));
 }
 

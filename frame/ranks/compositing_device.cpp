@@ -53,8 +53,9 @@ void open_compositing_device(const DistributedSettings& settings, exchange::Tran
     return;
   }
   if (backends.size() != 1 && backends.size() != roles.compositors.size())
-    throw scene::bad_input(fmt::format("`backend`: {} words for {} compositors; give one, or one for each",
-                                       backends.size(), roles.compositors.size()));
+    throw scene::bad_input(
+        fmt::format("`backend`: there are {} words for {} compositors; give one word, or one for each compositor",
+                    backends.size(), roles.compositors.size()));
   compositor::GlSettings gl = settings.gl;
   gl.method = device.method, gl.half = device.half;
   gl.egl_device.number = device.egl_device;

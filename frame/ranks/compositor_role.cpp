@@ -363,7 +363,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     statistics.integrator = integrator.name();
     statistics.composited_on = run.device.name;
     if (sums.failed_devices > 0)
-      statistics.composited_on += fmt::format("; {} failed, the CPU did the rest", sums.failed_devices);
+      statistics.composited_on += fmt::format("; {} failed, so the CPU composited the rest", sums.failed_devices);
     finished.stopped = sums.stopped > 0;
     finished.overlapping = sums.overlapping > 0;
     ++left;

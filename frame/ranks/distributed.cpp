@@ -85,15 +85,15 @@ void check(const DistributedSettings& settings) {
   if (settings.render.mesh.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
   if (settings.frame.by_depth() && settings.exchange == Exchange::runs)
-    throw scene::bad_input(fmt::format("`exchange` runs: {} needs the segments that runs are made of; use segments",
-                                       settings.frame.peel ? "`peel`" : "a deep image"));
+    throw scene::bad_input(
+        fmt::format("`exchange` runs: {} needs single ray segments, which runs combine; use `exchange` segments",
+                    settings.frame.peel ? "`peel`" : "a deep image"));
   const scene::Integrator& integrator = settings.render.integrator;
   if (settings.exchange == Exchange::runs && integrator.kind == scene::IntegratorKind::automatic &&
       !scene::error_budget::runs_keep(integrator.accuracy, settings.render.mesh.shading.has_value()))
-    throw scene::bad_input(
-        fmt::format("`exchange` runs: `accuracy` {} leaves no room for the {} that runs may err; use "
-                    "`exchange` segments",
-                    integrator.accuracy, scene::error_budget::runs));
+    throw scene::bad_input(fmt::format(
+        "`exchange` runs: `accuracy` {} is too strict for runs, whose error may be {}; use `exchange` segments",
+        integrator.accuracy, scene::error_budget::runs));
   const DeviceSettings& device = settings.render.mesh.device;
   const bool on_device = std::ranges::any_of(device.backends, [](Backend b) { return b != Backend::cpu; });
   if (on_device && !settings.render.surfaces.empty())
@@ -102,7 +102,7 @@ void check(const DistributedSettings& settings) {
   if (on_device && settings.render.mesh.shading)
     throw scene::bad_input("`shade`: meshes are shaded on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.frame.by_depth())
-    throw scene::bad_input(fmt::format("{}: it is made on the CPU; leave out `compositor` and `backend`",
+    throw scene::bad_input(fmt::format("{}: it is composited on the CPU; leave out `compositor` and `backend`",
                                        deep_word(settings.frame.peel.has_value())));
   if (on_device && device.method == GlMethod::fragment && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: `compositor` gl-fragment takes ray segments; use `exchange` segments");

@@ -95,8 +95,9 @@ ChunkReceiver::ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, 
       bases_(static_cast<std::size_t>(ranks)),
       stream_end_(static_cast<std::size_t>(ranks), 0) {
   if (tets > most_indices)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{} tets come to one process, at most 2^32 - 1 fit; use more processes", tets));
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        fmt::format("one process would receive {} tets, but supports at most 2^32 - 1; use more processes", tets));
   part_.mesh.association = association_;
   part_.mesh.tets.reserve(tets);
   part_.global_tet.reserve(tets);
@@ -117,12 +118,13 @@ void ChunkReceiver::add(int from, const exchange::Bytes& message) {
   std::vector<Base>& bases = bases_[static_cast<std::size_t>(from)];
   std::uint64_t& stream_end = stream_end_[static_cast<std::size_t>(from)];
   if (header.first_vertex != stream_end)
-    throw refuse(fmt::format("it begins at vertex {}, {} came before", header.first_vertex, stream_end));
+    throw refuse(fmt::format("it begins at vertex {}, but {} vertices came before", header.first_vertex, stream_end));
   scene::TetMesh& mesh = part_.mesh;
   const std::uint64_t known = mesh.positions.size(), first_tet = mesh.tets.size();
   if (known + v > most_indices)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       "more than 2^32 - 1 vertices come to one process; use more processes");
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        "one process would receive more than 2^32 - 1 vertices, which it does not support; use more processes");
   bases.push_back({header.first_vertex, known});
   reader.take_onto(mesh.positions, v);
   reader.take_onto(mesh.scalars, point ? v : t);
@@ -146,8 +148,9 @@ MeshPart ChunkReceiver::finish() {
   scene::TetMesh& mesh = part_.mesh;
   const std::size_t n = mesh.tets.size();
   if (n != expected_)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{} tets of a mesh were awaited, {} came; please report", expected_, n));
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        fmt::format("{} tets of a mesh were expected, but {} were received; please report this", expected_, n));
   if (!std::is_sorted(part_.global_tet.begin(), part_.global_tet.end())) {
     std::vector<std::uint32_t> order(n);
     std::iota(order.begin(), order.end(), 0u);

@@ -16,7 +16,7 @@ scene::Error run_error(const exchange::Transport& transport, const std::exceptio
                         fmt::format("rank {} of {}: {}", transport.rank(), transport.size(), words));
   };
   if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr)
-    return of_this_rank("needs more memory than there is; use more ranks, or lower `memory`");
+    return of_this_rank("it needs more memory than is available; use more ranks, or lower `memory`");
   if (const auto of_threads = scene::thread_fault(fault)) return of_this_rank(of_threads->what());
   return of_this_rank(fmt::format("unexpected: {}; please report", fault.what()));
 }

@@ -46,7 +46,7 @@ GridReference::GridReference(const scene::SampleSource& source, const scene::Cam
       shading_(shading),
       surfaces_(by_value(surfaces, transfer_function)),
       surface_light_(surfaces.light) {
-  if (knots_.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
+  if (knots_.empty()) throw scene::bad_input("transfer function: it has no knots; give at least one");
   if (!shading_) return;
   if (emission_ != scene::Emission::absorption)
     throw scene::bad_input("shading needs emission in proportion to extinction");

@@ -309,7 +309,8 @@ TEST(AnnotatedPicture, NamesWhatCannotBeDrawn) {
   EXPECT_EQ(complaint(everything()), "");
   Annotation logarithmic;
   logarithmic.color_bar = ColorBar{.logarithmic = true};
-  EXPECT_NE(complaint(logarithmic).find("0 to 10, reaches 0 or less"), std::string::npos) << complaint(logarithmic);
+  EXPECT_NE(complaint(logarithmic).find("0 to 10, includes 0 or negative values"), std::string::npos)
+      << complaint(logarithmic);
   EXPECT_EQ(complaint(logarithmic, ramp(1, 10)), "");
   logarithmic.color_bar->range = std::array{0.5, 10.0};
   EXPECT_EQ(complaint(logarithmic), "");

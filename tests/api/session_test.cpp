@@ -491,7 +491,7 @@ TEST(MeshArrays, FaultsNameArrayAndPlace) {
   EXPECT_NE(error().find("scalars for"), std::string::npos) << error();
   cube = Cube(2);
   cube.tets.pop_back();
-  EXPECT_NE(error().find("not four a tet"), std::string::npos) << error();
+  EXPECT_NE(error().find("not four per tet"), std::string::npos) << error();
   cube = Cube(2);
   cube.tets.clear();
   EXPECT_NE(error(), "no error");

@@ -139,7 +139,7 @@ TEST(ValidSettings, RefusesInvalidTriangles) {
   expect_refused({{[&](Settings& s) {
                      s.surfaces.triangles = {{broken, {}, 1}};
                    },
-                   "surface", "uses point 2 of 2"}},
+                   "surface", "uses point 2, but there are only 2 points"}},
                  DataKind::mesh);
 }
 

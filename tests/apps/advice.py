@@ -115,7 +115,7 @@ R --threshold 7,8 => nothing is left to render => R --threshold 0,1
 R --threshold 1 => is not two numbers; write MIN,MAX => R --threshold 0,1
 R --clip 1,2,3 => is not PX,PY,PZ,NX,NY,NZ => R --clip 0,0,0,1,2,3
 R --clip 9,0,0,1,0,0 => nothing is on the side that --clip keeps => R --clip 0,0,0,1,0,0
-R --clip 0,0,0,0,0,0 => give the side to keep => R --clip 0,0,0,0,0,1
+R --clip 0,0,0,0,0,0 => give a normal that points to the side to keep => R --clip 0,0,0,0,0,1
 R --clip box:0,0,0,0,1,1 => give two opposite corners => R --clip box:0,0,0,1,1,1
 R --threshold 0,0.5 --clip 0.4,0.4,0.4,1,1,1 => move the plane => R --threshold 0,1 --clip 0.4,0.4,0.4,1,1,1
 R --clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0 => reverse the normal or move the plane => R --clip 5,0,0,-1,0,0
@@ -161,10 +161,10 @@ R --rasterizer scanline --projection perspective => use an orthographic view, or
     => R --rasterizer planes --projection perspective
 R --integrator sampled:4 -o a.deep.exr => use exact or auto => R --integrator exact -o a.deep.exr
 R --compositor gl-fragment --backend osmesa --exchange runs => use --exchange segments => R --exchange segments
-R --backend osmesa,cpu => give one, or one for each => R --backend cpu
-S --memory 1M --size 1024x1024 --threads 1 => raise it => S --memory 2M --size 1024x1024 --threads 1
+R --backend osmesa,cpu => give one word, or one for each => R --backend cpu
+S --memory 1M --size 1024x1024 --threads 1 => raise --memory => S --memory 2M --size 1024x1024 --threads 1
 R --peel 0.5 --integrator sampled:4 => use auto or exact => R --peel 0.5 --integrator exact
-S --size 64x64 --peel 0.5:64 --memory 1M => raise it, or ask for fewer layers
+S --size 64x64 --peel 0.5:64 --memory 1M => raise --memory, or request fewer layers
     => S --size 64x64 --peel 0.5:64 --memory 64M
 R --compositor cpu --backend osmesa => leave one of the two out => R --compositor cpu
 R --rasterizer device => or use --rasterizer planes => R --rasterizer planes

@@ -141,7 +141,7 @@ TEST(Annotations, ReportsAMachineWithoutFonts) {
   unsetenv("FONTCONFIG_FILE");
   EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.error_lines(), 1u) << run.err;
-  EXPECT_NE(run.err.find("no font is found; install one"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("no font was found; install one"), std::string::npos) << run.err;
   EXPECT_EQ(folder.names(), (Words{"cube.vtu", "fonts.conf"}));
 }
 

@@ -137,7 +137,7 @@ TEST(Chart, AVolumeAndAPeersPictureShareOneChart) {
   const Outcome wrong =
       tessera({"chart", folder / "r.vti", "--size", "8x8", "--repeat", "1", "--quiet", "--peer", folder / "p.json"});
   EXPECT_EQ(wrong.status, 2);
-  EXPECT_NE(wrong.err.find("is 16x12, the chart 8x8"), std::string::npos);
+  EXPECT_NE(wrong.err.find("it is 16x12 pixels, but the chart is 8x8"), std::string::npos);
 }
 
 TEST(Chart, ABudgetForNothingStillMeasuresTheDefaultAndNamesTheRest) {

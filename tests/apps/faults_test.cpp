@@ -67,7 +67,7 @@ TEST(Faults, InvalidArgumentsNameTheOption) {
       {{"--framebuffer", "half"}, "gl-fragment"},
       {{"--compositor", "gl-fragment", "--framebuffer", "double"}, "half or float"},
       {{"--egl-device", "0"}, "is for --backend egl"},
-      {{"--backend", "osmesa", "-o", folder / "d.deep.exr"}, "made on the CPU"},
+      {{"--backend", "osmesa", "-o", folder / "d.deep.exr"}, "composited on the CPU"},
       {{"--emission", "both"}, "absorption or independent"},
       {{"--blend", "soft"}, "linear or display"},
       {{"--png-bits", "12"}, "8 or 16"},

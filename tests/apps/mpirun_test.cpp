@@ -205,9 +205,11 @@ TEST_F(Mpirun, RanksWithDifferentArgumentsEndInOneLine) {
   const Words first{"render", mesh, "-o", a, "--quiet"};
   for (const auto& [other, message] : std::vector<std::pair<Words, std::string>>{
            {{"render", mesh, "-o", b, "--quiet"}, "argument 4: rank 2 of 3 was given '" + b},
-           {{"render", mesh, "-o", a}, "argument 5: rank 2 of 3 was given nothing where the first was given '--qui"},
+           {{"render", mesh, "-o", a},
+            "argument 5: rank 2 of 3 was given nothing where the first rank was given '--qui"},
            {{"info", mesh, "-o", a, "--quiet"}, "argument 1: rank 2 of 3 was given 'info'"},
-           {{"render", mesh, "-o", a, "--quiet", "--size", "9x9"}, "'--size' where the first was given nothing"}}) {
+           {{"render", mesh, "-o", a, "--quiet", "--size", "9x9"},
+            "'--size' where the first rank was given nothing"}}) {
     Words command = mpirun_command(2, first);
     command.insert(command.end(), {":", "-n", "1", TESSERA_PROGRAM});
     command.insert(command.end(), other.begin(), other.end());

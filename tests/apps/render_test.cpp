@@ -150,7 +150,8 @@ TEST(Render, AnAccuracyBelowThatOfPicturesIsRefused) {
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--accuracy", "9e-7"});
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.err,
-            "tessera: --accuracy 9e-07: images are of 32-bit numbers, which keep 1e-06 at best; give no less\n");
+            "tessera: --accuracy 9e-07: images consist of 32-bit floats, which are accurate to 1e-06 at best; give "
+            "this or more\n");
   EXPECT_EQ(folder.names(), Names{"cube.vtu"});
 }
 

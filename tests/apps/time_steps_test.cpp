@@ -57,8 +57,10 @@ TEST_F(TimeSteps, AFilmHasThePictureOfEachStep) {
 
 TEST_F(TimeSteps, ReportsTheShownStepAndHowToSeeAll) {
   const Outcome one = render("a.pfm", "");
-  EXPECT_NE(one.err.find("note: time step 3 of 0 to 3, the last by default; --time-step all shows them as a film"),
-            std::string::npos)
+  EXPECT_NE(
+      one.err.find(
+          "note: time step 3 of 0 to 3, which is the last and the default; --time-step all shows all steps as a film"),
+      std::string::npos)
       << one.err;
 }
 

@@ -76,7 +76,7 @@ TEST(CallersPolyhedra, RefusesInvalidFacesWithTheirPlace) {
   house = House(), house.locations[1] = 22;
   EXPECT_NE(house.fault().find("mesh: face location 1 is 22; it must be -1 to 21"), std::string::npos);
   house = House(), house.locations.pop_back();
-  EXPECT_NE(house.fault().find("mesh: 1 face locations for 2 cells"), std::string::npos);
+  EXPECT_NE(house.fault().find("mesh: there are 1 face locations for 2 cells"), std::string::npos);
   house = House(), house.faces.clear();
   EXPECT_NE(house.fault().find("2 face locations for 2 cells and 0 numbers of faces"), std::string::npos);
   house = House(), house.locations[1] = -1;

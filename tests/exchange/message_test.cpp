@@ -129,9 +129,9 @@ TEST(Message, OfAnotherVersionKindOrOriginIsRefusedInWords) {
   };
   EXPECT_EQ(value_of<std::uint64_t>(message, 2, MessageKind::credit), 5u);
   for (std::size_t at = 0; at < 4; ++at) EXPECT_EQ(changed(at), "a message from rank 2 has an unknown wire version");
-  EXPECT_EQ(changed(4), "a message from rank 2 is of wire version " + std::to_string(wire_version ^ 1) +
-                            ", this rank's are of version " + std::to_string(wire_version));
-  EXPECT_EQ(changed(6), "a message from rank 2 is of kind 5, kind 4 was expected");
+  EXPECT_EQ(changed(4), "a message from rank 2 has wire version " + std::to_string(wire_version ^ 1) +
+                            ", but this rank uses version " + std::to_string(wire_version));
+  EXPECT_EQ(changed(6), "a message from rank 2 is of kind 5, but kind 4 was expected");
   EXPECT_EQ(refusal([&] { value_of<std::uint32_t>(message, 2, MessageKind::credit); }),
             "a message from rank 2 is longer than it states");
 }
@@ -182,9 +182,9 @@ TEST(Collectives, ARankInAnotherCollectiveEndsTheRun) {
     });
     FAIL() << "no error";
   } catch (const scene::Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "exchange: a message from rank 2 is of kind 35, kind 16 was expected; all ranks must run "
-                 "the same program");
+    EXPECT_STREQ(
+        error.what(),
+        "exchange: a message from rank 2 is of kind 35, but kind 16 was expected; all ranks must run the same program");
   }
 }
 

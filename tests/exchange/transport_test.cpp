@@ -86,9 +86,10 @@ TEST(FirstContact, FindsTheFirstArgumentInWhichARankDiffers) {
     std::string message;
   };
   for (const Case& c : std::vector<Case>{
-           {{"render", "b", "-o", ""}, "argument 2: rank 2 of 3 was given 'b' where the first was given 'a'"},
-           {{"render", "a", "-o"}, "argument 4: rank 2 of 3 was given nothing where the first was given ''"},
-           {{"render", "a", "-o", "", ""}, "argument 5: rank 2 of 3 was given '' where the first was given nothing"}})
+           {{"render", "b", "-o", ""}, "argument 2: rank 2 of 3 was given 'b' where the first rank was given 'a'"},
+           {{"render", "a", "-o"}, "argument 4: rank 2 of 3 was given nothing where the first rank was given ''"},
+           {{"render", "a", "-o", "", ""},
+            "argument 5: rank 2 of 3 was given '' where the first rank was given nothing"}})
     try {
       run_ranks(3, [&](Transport& transport) {
         make_first_contact(transport, std::chrono::milliseconds(0), transport.rank() == 2 ? c.other : first);

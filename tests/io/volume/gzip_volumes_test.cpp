@@ -100,8 +100,8 @@ TEST_F(GzipVolumes, RefusesContentOutOfProportionToTheFile) {
   for (const auto& [name, begin] :
        {std::pair{"b.stl.gz", "solid x\n"}, {"b.tets.gz", "x"}, {"b.ply.gz", "ply\nformat ascii 1.0\n"}})
     test::expect_bad_input([this, &zeros, name = name, begin = begin] { read_mesh(write(name, begin + zeros(100))); },
-                           {name, "hold more than", "gunzip"});
-  expect_no_volume(write("b_4x4x4_uint8.raw.gz", zeros(170)), "hold more than");
+                           {name, "contain more than", "gunzip"});
+  expect_no_volume(write("b_4x4x4_uint8.raw.gz", zeros(170)), "contain more than");
   // A mask compresses by a factor of hundreds.
   const auto mask = write("m_256x256x1000_uint8.raw.gz", std::string(256 * 256 * 1000, '\1'));
   EXPECT_EQ(open_volume(mask).source->geometry().points, (scene::GridIndex{256, 256, 1000}));

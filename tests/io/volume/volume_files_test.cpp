@@ -223,7 +223,7 @@ TEST_F(VolumeFiles, NrrdFaultsAreNamed) {
                  "add a line 'endian: little', or big");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, but the file has 8");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 0 1\nencoding: raw\n"), "along y is 0");
-  expect_refused(with("type: uint8\ndimension: 3\nsizes: 60000 60000 60000\nencoding: gzip\n"), "cannot hold");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 60000 60000 60000\nencoding: gzip\n"), "cannot contain");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: gone\n"), "no such file");
 }
 

@@ -84,7 +84,7 @@ test("a page without the token asks for it, and takes an address that is typed",
   await page.getByRole("alert").filter({ hasText: "neither an address with a token nor a token" }).waitFor();
   await field.fill(`${address.origin}/?token=${"0".repeat(32)}`);
   await banner.getByRole("button", { name: "Try again" }).click();
-  const refused = page.getByRole("alert").filter({ hasText: "missing or of another run" });
+  const refused = page.getByRole("alert").filter({ hasText: "missing or belongs to another run" });
   await refused.getByLabel("Address that tessera serve printed").fill(address.href);
   await refused.getByRole("button", { name: "Try again" }).click();
   await at_rest(page);
@@ -103,7 +103,7 @@ test("a server that was started again at the same place is reached with its new 
   await first.ended;
   const second = start([file, "--port", printed.port, "--axes"]);
   const renewed = await second.address;
-  const refused = page.getByRole("alert").filter({ hasText: "missing or of another run" });
+  const refused = page.getByRole("alert").filter({ hasText: "missing or belongs to another run" });
   await refused.getByLabel("Address that tessera serve printed").fill(renewed.href);
   await refused.getByRole("button", { name: "Try again" }).click();
   await at_rest(page);
