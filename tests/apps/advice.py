@@ -490,7 +490,7 @@ CORD2R => CORD3G => have the points written in the basic system
 CTETRA => =(99999999),*1,==\nCTETRA => it replicates more than 10000000 entries; write them out
 BEGIN BULK => INCLUDE 'b.bdf' => it includes 'b.bdf', and there is no such file; put it there"""),
     ("I", "b.xyz", PLOT3D, r"""
-2 2 2\n0 => 2 2 3\n0 => is truncated or of another kind (the solution goes with --q)
+2 2 2\n0 => 2 2 3\n0 => is truncated or of another kind (give a solution file with --q)
 0 1 0 => 0 1d0 0 => write it with E
 0 1 0 => 2*0 1 0 => write each
 0 1 0 => 0 one 0 => PLOT3D in text is numbers alone"""),
