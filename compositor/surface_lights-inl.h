@@ -7,8 +7,9 @@
 //             light = opacity (color (ambient + diffuse c) + specular c^shininess).
 //           The mark of a crossing contains c and the number of the surface, which determines color and opacity
 //           (LatticeMark).
-// Accuracy  Double precision; the cosine has the bits of LatticeMark; integer powers are computed by
-//           repeated squaring.
+//           A surface that has the colour of the field gets it from the table of the transfer function.
+// Accuracy  Double precision, but colours of the field have single precision; the cosine has the bits of LatticeMark;
+//           integer powers are computed by repeated squaring.
 
 #if defined(TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_
@@ -33,6 +34,7 @@ namespace HWY_NAMESPACE {
 
 using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a segment a lane
 using namespace scene::HWY_NAMESPACE;      // doubles, packing
+using integrals::LaneTable;
 constexpr std::size_t most_lanes = MaxLanes(DI());
 
 /// Returns the surface numbers of marks.
@@ -42,12 +44,31 @@ HWY_INLINE VI number_of(VF mark) {
   return ShiftRight<Mark::cosine_bits>(BitCast(d, mark) - Set(d, static_cast<std::int32_t>(Mark::first_bits)));
 }
 
+/// Colours of the transfer function, one per lane.
+struct FieldColors {
+  Doubles red, green, blue;
+};
+
+/// Returns the colours at a scalar per lane. A scalar at a step has the colour above the step. `color_unit` is that of
+/// the table.
+template <TableForm form>
+HWY_INLINE FieldColors field_colors(const Lookup<form>& table, double color_unit, VF scalar) {
+  const MF all = scalar == scalar;
+  const auto index = table.index(table.locate(scalar, all), all);
+  const VF along = scalar - table.at(LaneTable::base, index);
+  const auto color = [&](int c) HWY_ATTR {
+    return promote(MulAdd(table.at(c + 1, index), along, table.at(c, index))) * doubles(color_unit);
+  };
+  return {color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
+}
+
 /// Same as scene::SurfaceSet::light(), for one mark per lane.
 class SurfaceLights {
  public:
   Doubles red, green, blue, opacity;
 
-  HWY_INLINE SurfaceLights(const scene::SurfaceSet& surfaces, VF mark) {
+  /// `field` is only needed if SurfaceSet::shows_field().
+  HWY_INLINE SurfaceLights(const scene::SurfaceSet& surfaces, VF mark, const FieldColors* field) {
     using Mark = projection::LatticeMark;
     const DF d;
     const DI di;
@@ -60,9 +81,14 @@ class SurfaceLights {
     const Doubles matte = doubles(parts.ambient) + doubles(parts.diffuse) * cosine;
     const Doubles highlight = doubles(parts.specular) * shine(surfaces, cosine);
     opacity = gather(paint.opacity.data(), number);
-    const auto light = [&](const std::vector<double>& color)
-                           HWY_ATTR { return (gather(color.data(), number) * matte + highlight) * opacity; };
-    red = light(paint.red), green = light(paint.green), blue = light(paint.blue);
+    const auto light = [&](Doubles color) HWY_ATTR { return (color * matte + highlight) * opacity; };
+    Doubles r = gather(paint.red.data(), number), g = gather(paint.green.data(), number),
+            b = gather(paint.blue.data(), number);
+    if (field != nullptr) {
+      const Doubles shows = gather(paint.by_field.data(), number);
+      r = r + shows * field->red, g = g + shows * field->green, b = b + shows * field->blue;
+    }
+    red = light(r), green = light(g), blue = light(b);
   }
 
   /// Composites the light of a surface over `behind`.

@@ -150,7 +150,8 @@ class PixelGroup {
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
       if (HWY_UNLIKELY(lights_ != nullptr)) light_.light_matter(to - from);
-      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces, rules.runs || some_unseen());
+      if (HWY_UNLIKELY(rules.surfaces != nullptr))
+        light_.put_surfaces(*rules.surfaces, table_, rules.table->color_unit, rules.runs || some_unseen());
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(rows);

@@ -89,7 +89,9 @@ struct LightRows {
   }
   /// Must be called after integrate(). Composites the light of surfaces in front of the light behind them.
   /// `show_first`: whether the first visible segment of some lane may still be needed.
-  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
+  template <TableForm form>
+  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, const Lookup<form>& table, double color_unit,
+                                 bool show_first) {
     const DF d;
     const DI di;
     for (std::size_t i = 0; i < marked; i += hn::Lanes(d)) {
@@ -97,7 +99,10 @@ struct LightRows {
       const auto here = FirstN(d, marked - i);
       const VI at = IfThenElse(RebindMask(di, here), Load(di, marked_at + i), Set(di, marked_at[i]));
       const VF marks = IfThenElse(here, Load(d, mark + i), Set(d, mark[i]));
-      const SurfaceLights light(surfaces, marks);
+      const bool shows_field = surfaces.shows_field();
+      FieldColors field{doubles(0), doubles(0), doubles(0)};
+      if (shows_field) field = field_colors(table, color_unit, GatherIndex(d, scalar_back, at));
+      const SurfaceLights light(surfaces, marks, shows_field ? &field : nullptr);
       const auto put = [&](const Doubles& of_surface, float* to) HWY_ATTR {
         const VF sum = demote(light.before(of_surface, promote(GatherIndex(d, to, at))));
         ScatterIndex(sum, d, to, at);

@@ -83,7 +83,9 @@ float lane_scalar(double value, double scalar_origin, double scalar_unit) {
 
 LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit,
                      double length_unit, scene::Emission emission_, StepRounding steps)
-    : emission(emission_), has_clear(false) {
+    : emission(emission_),
+      color_unit(emission_ == scene::Emission::independent ? 1 / length_unit : 1),
+      has_clear(false) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps, emission);
   knot_count = places.size();

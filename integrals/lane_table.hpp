@@ -68,6 +68,7 @@ struct LaneTable {
 
   std::size_t knot_count;  ///< K
   scene::Emission emission;
+  double color_unit;        ///< the colour that a number 1 in the rows of colours stands for
   bool has_clear;           ///< whether there is an interval that neither absorbs nor emits
   std::size_t stride;       ///< elements per row of `rows`
   std::vector<float> rows;  ///< column_count rows

@@ -52,6 +52,24 @@ void put_in_place(std::span<FaceMark> marks) {
   for (FaceMark& mark : marks) mark.behind = next_behind(place);
 }
 
+/// Sorts the marks of one ray, and sets their encoded depths.
+void sort_ray(std::span<FaceMark> marks) {
+  // Marks are compared by all fields: equal marks are interchangeable, so the order of the triangles has no effect.
+  std::sort(marks.begin(), marks.end(), [](const FaceMark& a, const FaceMark& b) {
+    const auto key = [](const FaceMark& m) {
+      return std::tie(m.depth, m.number, m.cosine, m.value, m.slope, m.slope_error);
+    };
+    return key(a) < key(b);
+  });
+  for (std::size_t first = 0, last; first < marks.size(); first = last) {
+    for (last = first + 1; last < marks.size() &&
+                           marks[last].depth - marks[first].depth <= marks[first].tolerance + marks[last].tolerance;
+         ++last)
+      marks[last].depth = marks[first].depth;
+    put_in_place(marks.subspan(first, last - first));
+  }
+}
+
 /// Returns the scalar at the fraction `part` of a segment. It is less than the scalar of the higher end, so that a part
 /// below a step of the transfer function keeps an end below the step.
 double scalar_between(double from, double to, double part) {
@@ -70,26 +88,17 @@ void FaceMarks::reset(std::size_t pixels) {
 }
 
 void FaceMarks::sort() {
-  // Marks are compared by all fields: equal marks are interchangeable, so the order of the triangles has no effect.
-  std::sort(marks_.begin(), marks_.end(), [](const FaceMark& a, const FaceMark& b) {
-    const auto key = [](const FaceMark& m) {
-      return std::tie(m.pixel, m.depth, m.number, m.cosine, m.value, m.slope, m.slope_error);
-    };
-    return key(a) < key(b);
-  });
-  for (auto first = marks_.begin(); first != marks_.end();) {
-    auto last = first + 1;
-    while (last != marks_.end() && last->pixel == first->pixel &&
-           last->depth - first->depth <= first->tolerance + last->tolerance)
-      (last++)->depth = first->depth;
-    put_in_place(std::span(first, last));
-    first = last;
-  }
   for (const FaceMark& mark : marks_) {
     ++begin_[mark.pixel + 1];
     own_ += mark.own ? 1 : 0;
   }
   for (std::size_t p = 1; p < begin_.size(); ++p) begin_[p] += begin_[p - 1];
+  next_ = begin_;
+  by_pixel_.resize(marks_.size());
+  for (const FaceMark& mark : marks_) by_pixel_[next_[mark.pixel]++] = mark;
+  marks_.swap(by_pixel_);
+  for (std::size_t p = 0; p + 1 < begin_.size(); ++p)
+    if (begin_[p] < begin_[p + 1]) sort_ray(std::span(marks_).subspan(begin_[p], begin_[p + 1] - begin_[p]));
 }
 
 void FaceMarks::append_own(RaySegments& segments) const {

@@ -50,6 +50,9 @@ class FaceMarks {
   void sort();
 
   [[nodiscard]] std::size_t size() const { return marks_.size(); }
+  [[nodiscard]] std::span<const FaceMark> marks() const { return marks_; }
+  /// The marks of pixel p have the indices [begin()[p], begin()[p + 1]).
+  [[nodiscard]] std::span<const std::uint32_t> begin() const { return begin_; }
   [[nodiscard]] std::size_t own() const { return own_; }
   /// Appends a crossing for each mark that this process owns; there must be room.
   void append_own(RaySegments& segments) const;
@@ -61,7 +64,9 @@ class FaceMarks {
   void cut_one(RaySegments& segments, std::size_t at, std::span<const FaceMark> marks) const;
 
   std::vector<FaceMark> marks_;
-  std::vector<std::uint32_t> begin_;  ///< begin of each pixel's marks
+  std::vector<std::uint32_t> begin_;
+  std::vector<FaceMark> by_pixel_;  ///< working memory
+  std::vector<std::uint32_t> next_;
   std::size_t own_ = 0;
 };
 

@@ -163,6 +163,11 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
   if (!mesh.values.empty())
     for (std::size_t i = 0; i < 3; ++i) value[i] = mesh.values[index[i]];
   const auto [low, high] = std::minmax({value[0], value[1], value[2]});
+  // Without perspective, all rays have one direction.
+  const auto seen_along = [&](const glm::dvec3& ray) {
+    return std::pair(glm::dot(ray, normal) > 0 ? surface.leaving : surface.entering, cosine_between(ray, normal));
+  };
+  const auto seen = seen_along(space_->direction(0, 0));
   // Changes of the edge functions of the edges opposite to the corners.
   const std::array<std::array<double, 2>, 3> growths{growth(c[1], c[2]), growth(c[2], c[0]), growth(c[0], c[1])};
   for (int y = box.y0; y < box.y1; ++y)
@@ -194,12 +199,10 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
           slope[axis] += weight * (c[i].depth - depth);
           slope_error[axis] += std::abs(weight) * (2 * tolerance + coplanar * std::abs(c[i].depth - depth));
         }
-      const glm::dvec3 ray = space_->direction(px, py);
-      const bool leaves = glm::dot(ray, normal) > 0;
-      marks.add({static_cast<std::uint32_t>((y - rect.y0) * rect.width() + x - rect.x0),
-                 leaves ? surface.leaving : surface.entering, depth,
-                 std::clamp(mean(value[0], value[1], value[2]), low, high), tolerance, slope, slope_error,
-                 cosine_between(ray, normal), surface.owns(place.triangle)});
+      const auto [number, cosine] = per_tangent == 0 ? seen : seen_along(space_->direction(px, py));
+      marks.add({static_cast<std::uint32_t>((y - rect.y0) * rect.width() + x - rect.x0), number, depth,
+                 std::clamp(mean(value[0], value[1], value[2]), low, high), tolerance, slope, slope_error, cosine,
+                 surface.owns(place.triangle)});
     }
 }
 

@@ -18,10 +18,11 @@ struct SurfaceFaces {
   const tessera::TriangleMesh* mesh;
   std::uint32_t entering, leaving;      ///< scene::SurfaceSet::face_crossing() of rays that enter, or leave
   std::span<const std::uint8_t> own{};  ///< one flag per triangle: 1 if this process owns it
-  /// If `own` is empty, the process owns the triangles with triangle % processes == process.
-  std::uint32_t process = 0, processes = 1;
+  /// If `own` is empty, process p of all processes has the triangles with triangle % processes == p. One flag per
+  /// process: 1 if its triangles belong to this process, or to the team that renders together with this process.
+  std::vector<std::uint8_t> here{1};
   [[nodiscard]] bool owns(std::size_t triangle) const {
-    return own.empty() ? triangle % processes == process : own[triangle] != 0;
+    return (own.empty() ? here[triangle % here.size()] : own[triangle]) != 0;
   }
 };
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
+#include "tessera/surfaces.hpp"
 
 /// The largest differences of pixels from exact arithmetic, in linear RGBA, and the shares of each cause of errors. All
 /// shares are defined in this file. For each method of rendering, their sum is at most the promised error
@@ -28,6 +30,15 @@ constexpr double lane_lights = 4 * 0x1p-24;  ///< shaded segments: their light a
 constexpr double lane_rays = 1e-6;           ///< rays of grids in single precision, in addition to their recorded
                                              ///< bounds
 constexpr double runs = 2e-6;                ///< Exchange::runs: light and opacity of runs are sent in single precision
+/// Matter on the wrong side of a surface of triangles, if this many steps of the lattice, of the 2^31 of a mesh of this
+/// optical depth, are between the surface and a cell's face (projection/lattice/lattice_faces.hpp).
+constexpr double lane_faces(double steps, double optical_depth) { return steps * 0x1p-31 * optical_depth; }
+/// Light of surfaces on the integer lattice, for colours up to one. The cosine of the angle to the ray has 19 bits.
+inline double lane_surfaces(const SurfaceLight& light) {
+  constexpr double cosine = 0x1p-20;
+  const double power = light.shininess >= 1 ? light.shininess * cosine : std::pow(cosine, light.shininess);
+  return light.diffuse * cosine + (light.shininess > 0 ? light.specular * power : 0);
+}
 
 // Shares of the requested accuracy.
 /// Contribution that is left out behind the end of a ray or, with absorption, of a segment.
@@ -37,7 +48,7 @@ constexpr double thick_pieces(double accuracy) { return accuracy / 64; }
 /// Error of all parts of a ray's segments that are left out behind dense matter.
 constexpr double dark_pieces(double accuracy) { return accuracy / 64; }
 /// Error due to rounding scalars to the integer lattice.
-constexpr double lattice_scalars(double accuracy) { return std::min(2e-5, 0.6 * accuracy); }
+constexpr double lattice_scalars(double accuracy) { return 0.6 * accuracy; }
 constexpr double lattice_scalars_of_exact = 0.75 * exact_mesh;
 /// The largest recorded error of a grid's ray in single precision due to steps, ramps and ends
 /// (volume/lane_error_bound.hpp). Rays with larger errors are cast again in double precision.

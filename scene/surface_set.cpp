@@ -114,11 +114,13 @@ void SurfaceSet::add_face(const std::optional<glm::dvec3>& color, double opacity
 
 void SurfaceSet::fill_columns() {
   PaintColumns& to = paint_by_number_;
-  const auto add = [&](const glm::dvec3& color, double opacity) {
-    to.red.push_back(color.x), to.green.push_back(color.y), to.blue.push_back(color.z), to.opacity.push_back(opacity);
+  const auto add = [&](const Paint& paint) {
+    to.red.push_back(paint.color.x), to.green.push_back(paint.color.y), to.blue.push_back(paint.color.z);
+    to.opacity.push_back(paint.opacity), to.by_field.push_back(paint.by_field ? 1 : 0);
+    shows_field_ = shows_field_ || paint.by_field;
   };
-  for (const std::uint32_t i : paint_of_) add(paints_[i].color, paints_[i].opacity);
-  add(glm::dvec3(0), 0);
+  for (const std::uint32_t i : paint_of_) add(paints_[i]);
+  add({glm::dvec3(0), 0});
 }
 
 double SurfaceSet::shine(double cosine) const {

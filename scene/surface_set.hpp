@@ -72,12 +72,14 @@ class SurfaceSet {
   /// the field's value at the crossing, for triangle surfaces coloured by the field. The light is zero if no crossing
   /// has the number `crossing`.
   [[nodiscard]] Light light(std::uint32_t crossing, double cosine, double value = 0) const;
-  /// The components of light() of iso-surfaces for vector code, indexed by the number of the crossing, with zeros after
-  /// the last crossing.
+  /// The components of light() for vector code, indexed by the number of the crossing, with zeros after the last
+  /// crossing. `by_field` is 1 for surfaces that have the colour of the field, whose other components are 0; else 0.
   struct PaintColumns {
-    std::vector<double> red, green, blue, opacity;
+    std::vector<double> red, green, blue, opacity, by_field;
   };
   [[nodiscard]] const PaintColumns& paint_by_number() const { return paint_by_number_; }
+  /// Whether some surface has the colour of the field.
+  [[nodiscard]] bool shows_field() const { return shows_field_; }
   [[nodiscard]] const SurfaceLight& parts_of_light() const { return light_; }
   /// Returns `cosine` to the power of the light's shininess.
   [[nodiscard]] double shine(double cosine) const;
@@ -104,6 +106,7 @@ class SurfaceSet {
   std::vector<float> on_lattice_, by_number_;
   PaintColumns paint_by_number_;
   SurfaceLight light_;
+  bool shows_field_ = false;
   int whole_shininess_ = -1;  ///< -1: not an integer, or a large one
   double max_color_ = 0;
 };

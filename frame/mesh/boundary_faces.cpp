@@ -115,9 +115,10 @@ BoundaryFaces boundary_faces(const scene::TetMeshView& mesh) {
   return boundary;
 }
 
-BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport) {
-  std::vector<OpenFace> faces = open_faces(part);
-  for (OpenFace& face : faces) face.rank = static_cast<std::uint32_t>(transport.rank());
+BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport, int owner) {
+  std::vector<OpenFace> faces;
+  if (transport.rank() == owner) faces = open_faces(part);
+  for (OpenFace& face : faces) face.rank = static_cast<std::uint32_t>(owner);
   exchange::Bytes message = exchange::begin_message(exchange::MessageKind::open_faces, faces.size() * sizeof(OpenFace));
   exchange::append_list(message, faces);
   faces.clear();
@@ -135,24 +136,23 @@ BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport
   BoundaryFaces boundary;
   for (auto first = faces.begin(); first != faces.end();) {
     const auto last = std::find_if(first, faces.end(), [&](const OpenFace& face) { return key(face) != key(*first); });
-    if (last - first == 1) append(boundary, *first, first->rank == static_cast<std::uint32_t>(transport.rank()));
+    if (last - first == 1) append(boundary, *first, first->rank == static_cast<std::uint32_t>(owner));
     first = last;
   }
   return boundary;
 }
 
 std::vector<projection::SurfaceFaces> faces_of(const scene::Surfaces& surfaces, const scene::SurfaceSet& set,
-                                               const BoundaryFaces* boundary, std::uint32_t process,
-                                               std::uint32_t processes) {
+                                               const BoundaryFaces* boundary, const std::vector<std::uint8_t>& here) {
   std::vector<projection::SurfaceFaces> faces;
   std::size_t number = 0;
   for (; number < surfaces.boundary.size(); ++number)
     if (boundary != nullptr)
-      faces.push_back({&boundary->mesh, set.face_crossing(number, false), set.face_crossing(number, true),
-                       boundary->own, process, processes});
+      faces.push_back(
+          {&boundary->mesh, set.face_crossing(number, false), set.face_crossing(number, true), boundary->own, here});
   for (const TriangleSurface& surface : surfaces.triangles) {
     const std::uint32_t crossing = set.face_crossing(number++, true);
-    faces.push_back({surface.mesh.get(), crossing, crossing, {}, process, processes});
+    faces.push_back({surface.mesh.get(), crossing, crossing, {}, here});
   }
   return faces;
 }

@@ -17,7 +17,7 @@ namespace tessera::frame {
 /// orientation is arbitrary.
 struct BoundaryFaces {
   tessera::TriangleMesh mesh;  ///< three separate points per triangle; cell data: each of the three has the tet's value
-  std::vector<std::uint8_t> own;  ///< one flag per triangle: 1 if this rank has the tet
+  std::vector<std::uint8_t> own;  ///< one flag per triangle: 1 if this rank, or its team, has the tet
 };
 
 /// Finds the boundary faces of a whole mesh. Uses 80 bytes per tet while it runs. Must be called in the caller's task
@@ -25,13 +25,14 @@ struct BoundaryFaces {
 BoundaryFaces boundary_faces(const scene::TetMeshView& mesh);
 
 /// Finds the boundary faces of a mesh in parts, one part per rank, and returns the same triangles on all ranks.
-/// Collective: every rank sends the faces that no other tet of its part shares to all ranks, 104 bytes per face.
-BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport);
+/// Collective: every rank sends the faces that no other tet of its part shares to all ranks, 104 bytes per face. Ranks
+/// that share one part pass the same `owner`, the rank that sends the part's faces.
+BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport, int owner);
 
-/// Returns all triangle surfaces of a frame and marks the triangles that process `process` of `processes` owns.
+/// Returns all triangle surfaces of a frame and marks those that belong to this process (SurfaceFaces::here).
 /// `boundary` may be null. `boundary` and the triangles of the surfaces must outlive the result.
 std::vector<projection::SurfaceFaces> faces_of(const scene::Surfaces& surfaces, const scene::SurfaceSet& set,
-                                               const BoundaryFaces* boundary, std::uint32_t process = 0,
-                                               std::uint32_t processes = 1);
+                                               const BoundaryFaces* boundary,
+                                               const std::vector<std::uint8_t>& here = {1});
 
 }  // namespace tessera::frame

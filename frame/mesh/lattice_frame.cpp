@@ -17,16 +17,21 @@ namespace {
 namespace budget = scene::error_budget;
 
 constexpr double most_optical_depth = 2000;
-/// The largest change of a pixel that the rounding of scalars may cause.
-double most_error_of(const scene::Integrator& integrator) {
-  const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
-  return automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
-}
-/// Whether float lanes are accurate enough if a ray may have this brightness.
-bool lanes_suffice(const scene::Integrator& integrator, double brightest, bool shaded) {
-  return integrator.kind == scene::IntegratorKind::automatic
-             ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded) <= integrator.accuracy
-             : budget::exact_mesh_on_lattice(brightest, shaded) <= budget::exact_mesh;
+/// The largest change of a pixel that the rounding of scalars may cause: its share of the budget, or what the other
+/// errors leave, if a ray may have this brightness and the mesh this optical depth. Not above zero: float lanes are not
+/// accurate enough.
+double most_error_of(const Settings& settings, double brightest, double optical_depth, bool perspective) {
+  const scene::Integrator& integrator = settings.integrator;
+  const bool automatic = integrator.kind == scene::IntegratorKind::automatic,
+             shaded = settings.mesh.shading.has_value();
+  const double share = automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
+  const double all = automatic ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded)
+                               : budget::exact_mesh_on_lattice(brightest, shaded);
+  const double lit = settings.surfaces.empty() ? 0 : budget::lane_surfaces(settings.surfaces.light);
+  const double steps = projection::LatticeFaces::face_error(perspective);
+  const double faces = settings.surfaces.has_faces() ? brightest * budget::lane_faces(steps, optical_depth) : 0;
+  const double promised = automatic ? integrator.accuracy : budget::exact_mesh;
+  return all > promised ? 0 : std::min(share, promised - (all - share) - lit - faces);
 }
 // Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
 // most D int T dt over the ray's path through the piece, times the largest contribution behind the piece. Transmittance
@@ -52,6 +57,13 @@ std::array<double, 2> depth_range(const projection::PixelSpace& space, const sce
   return {std::max(low, space.near_depth()), std::min(high, space.far_depth())};
 }
 
+/// Returns the box together with the corners of triangle surfaces.
+scene::Box with_triangles(scene::Box box, const Surfaces& surfaces) {
+  for (const TriangleSurface& surface : surfaces.triangles)
+    for (const glm::dvec3& p : surface.mesh->points) box.low = glm::min(box.low, p), box.high = glm::max(box.high, p);
+  return box;
+}
+
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
@@ -66,10 +78,11 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
       shading ? projection::brightest(*shading, transfer_function) : transfer_function;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
+  const bool has_faces = settings.surfaces.has_faces();
   if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      settings.surfaces.has_faces() || !projection::lattice_available())
+      (has_faces && !settings.surfaces.iso.empty()) || !projection::lattice_available())
     return std::nullopt;
-  const auto [near, far] = depth_range(space, box);
+  const auto [near, far] = depth_range(space, with_triangles(box, settings.surfaces));
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;
 
   Lattice lattice{};
@@ -80,7 +93,8 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
   const double longest = (far - near) * most_length_per_depth(space);
-  if (function.max_extinction() * longest > most_optical_depth) return std::nullopt;
+  const double optical_depth = function.max_extinction() * longest;
+  if (optical_depth > most_optical_depth) return std::nullopt;
 
   const auto knots = function.knots();
   const auto [low, high] = scalar_range;
@@ -92,10 +106,10 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   lattice.scalar_unit = Lattice::unit_for(margin * reach);
   const double length = std::min(longest, glm::length(box.high - box.low));
   const bool independent = settings.emission == scene::Emission::independent;
-  const double most_error = most_error_of(settings.integrator);
+  const double most_error = most_error_of(settings, scene::most_light(function, settings.emission, length),
+                                          optical_depth, space.perspective());
+  if (!(most_error > 0)) return std::nullopt;
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
-  if (!lanes_suffice(settings.integrator, scene::most_light(function, settings.emission, length), shading.has_value()))
-    return std::nullopt;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;
@@ -112,7 +126,9 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
     const glm::dvec3 color = glm::abs(b.color - a.color);
     const double seen = seen_length(length, std::min(a.extinction, b.extinction));
     const double depth = std::min(std::abs(b.extinction - a.extinction) * seen, most_change_of_depth) * brightest;
-    const double most_color = std::max({color.x, color.y, color.z}) * (independent ? seen : 1);
+    // A triangle surface may show the colour itself.
+    const double most_color =
+        std::max({color.x, color.y, color.z}) * (independent ? std::max(seen, has_faces ? 1.0 : 0.0) : 1);
     if (std::max(most_color, depth) * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
   }
   return lattice;

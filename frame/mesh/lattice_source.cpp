@@ -37,6 +37,11 @@ bool LatticeSource::start(const scene::PixelRect& rect, const projection::DepthO
   order_ = &order;
   cells_ = from_ = placed_ = stream_.size = 0;
   windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity_, view_.light != nullptr);
+  if (context_.faces == nullptr) return true;
+  context_.faces->meet(rect, marks_);
+  faces_.set(marks_, view_.lattice, view_.perspective, view_.steps);
+  stream_.lit = view_.light != nullptr;
+  faces_.append_own(stream_);
   return true;
 }
 
@@ -52,7 +57,8 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
     from_ = cells_;
     cells_ += cells.size();
     stream_.size = placed_ = 0;
-    projection::rasterize_lattice(view_, {cells, entries.subspan(cells_)}, {rect_, sink.open()}, scratch_, stream_,
+    projection::rasterize_lattice(view_, {cells, entries.subspan(cells_)},
+                                  {rect_, sink.open(), faces_.empty() ? nullptr : &faces_}, scratch_, stream_,
                                   counts_->raster);
   }
 }

@@ -37,6 +37,8 @@ class LatticeSource {
   std::size_t from_ = 0;    ///< index of the first cell whose segments are in `stream_`
   std::size_t placed_ = 0;  ///< number of segments of `stream_` that are already in the windows
   projection::LatticeScratch scratch_;
+  projection::FaceMarks marks_;
+  projection::LatticeFaces faces_;
   projection::SegmentStream stream_;
   projection::SegmentWindows windows_;
 };

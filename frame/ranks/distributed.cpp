@@ -49,7 +49,8 @@ void LoadedMesh::load(std::size_t number) {
   boundary_.reset();
   mesh_ = mesh_of_(number);
   if (team_ != nullptr) share_mesh();
-  if (!settings_.surfaces.boundary.empty()) boundary_ = boundary_faces(mesh_.part, transport_);
+  if (!settings_.surfaces.boundary.empty())
+    boundary_ = boundary_faces(mesh_.part, transport_, team() != nullptr ? team()->ranks().front() : transport_.rank());
   if (mesh_.prepared != nullptr)
     projector_.emplace(mesh_.prepared,
                        scene::with_threads(settings_.threads, [&] { return scene::bounds(mesh_.part); }), settings_);
@@ -136,9 +137,7 @@ class DistributedRenderer::State {
     const std::stop_token stop = relayed.token();
     if (!opened_) {
       const bool projects = settings_.roles.projects(transport_.rank());
-      // With triangle surfaces there is no team, because each rank owns other triangles.
-      if (settings_.render.use.sharing && settings_.roles.projectors.size() > 1 &&
-          !settings_.render.surfaces.has_faces())
+      if (settings_.render.use.sharing && settings_.roles.projectors.size() > 1)
         team_ = exchange::HostTeam::form(transport_, projects);
       if (projects) loaded_.emplace(transport_, settings_, mesh_of_, team_.get());
     }
@@ -190,7 +189,8 @@ class DistributedRenderer::State {
       loaded_->load(number);
     } else if (number_ != number) {
       static_cast<void>(mesh_of_(number));
-      if (!settings_.render.surfaces.boundary.empty()) static_cast<void>(boundary_faces({}, transport_));
+      if (!settings_.render.surfaces.boundary.empty())
+        static_cast<void>(boundary_faces({}, transport_, transport_.rank()));
     }
     number_ = number;
   }

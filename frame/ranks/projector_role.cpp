@@ -32,6 +32,17 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   for (; frame >= left + in_flight; ++left) wait_for_frame(run);
 }
 
+/// Returns one flag per projector: 1 for this rank and the members of its team.
+std::vector<std::uint8_t> projectors_here(const DistributedRun& run, const exchange::HostTeam* team) {
+  std::vector<std::uint8_t> here;
+  for (const int rank : run.settings.roles.projectors)
+    here.push_back(rank == run.transport.rank() ||
+                           (team != nullptr && std::ranges::find(team->ranks(), rank) != team->ranks().end())
+                       ? 1
+                       : 0);
+  return here;
+}
+
 /// The index of this rank among the projectors, 0 .. N-1.
 int number_of(const DistributedRun& run) {
   const auto& projectors = run.settings.roles.projectors;
@@ -64,7 +75,9 @@ class FrameSinks {
         std::max(integrals::opacity_weight(max_color, mesh.diagonal, settings_.render.emission), surfaces_.max_color());
     if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
     if (light_) scene_.light = &*light_, scene_.normals = &normals_;
-    if (!settings_.frame.by_depth())
+    // Runs of several ranks end at the triangles of other ranks only in double precision (FaceMarks).
+    const bool runs_end_at_faces = settings_.render.surfaces.has_faces() && settings_.exchange == Exchange::runs;
+    if (!settings_.frame.by_depth() && (!runs_end_at_faces || makes_pixels_))
       lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
     table_.emplace(run.function, *lattice_, settings_.render.emission);
@@ -152,9 +165,8 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
     const scene::TraceScope timing(settings.projecting, "pack", number, part.records.size(), 0);
     outbox.put(std::move(part));
   });
-  const std::vector<projection::SurfaceFaces> faces = faces_of(
-      settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(number_of(run)),
-      static_cast<std::uint32_t>(settings.roles.projectors.size()));
+  const std::vector<projection::SurfaceFaces> faces =
+      faces_of(settings.render.surfaces, sinks.surfaces(), loaded.boundary(), projectors_here(run, loaded.team()));
   std::vector<int> members;
   TeamTask team;
   if (loaded.team() != nullptr) {

@@ -12,6 +12,7 @@
 #include "projection/lattice/lattice_cover-inl.h"
 #include "projection/lattice/lattice_cross-inl.h"
 #include "projection/lattice/lattice_cut-inl.h"
+#include "projection/lattice/lattice_faces-inl.h"
 #include "projection/lattice/lattice_lights-inl.h"
 #include "projection/lattice/lattice_normals-inl.h"
 #include "projection/lattice/lattice_surfaces.hpp"
@@ -129,6 +130,7 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
   out.lit = lights.has_value();
   for (std::size_t from = 0; from < list.cells.size(); from += CellBatch::most) {
     const auto cells = list.cells.subspan(from, std::min<std::size_t>(CellBatch::most, list.cells.size() - from));
+    const std::size_t begin = out.size;
     if (from == 0) prefetch_cells(view, list.next);
     if (view.perspective)
       set_up_cells<true>(view, cells, pixels, batch);
@@ -149,6 +151,7 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
       per_cell ? rasterize_cells<false, true>(view, batch, pixels, cover_scratch, out, counts)
                : rasterize_cells<false, false>(view, batch, pixels, cover_scratch, out, counts);
     if (lights) lights->set(batch, first, out);
+    if (pixels.faces != nullptr) FaceCuts(*pixels.faces, out).cut(begin);
     if (crossed == 0) continue;
     const CrossedSegments segments = crossed_segments(out, first, surfaces);
     if (segments.count == 0) continue;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "projection/depth_limits.hpp"
+#include "projection/lattice/lattice_faces.hpp"
 #include "projection/lattice/segment_windows.hpp"
 #include "projection/matter_light.hpp"
 #include "projection/pixel_space.hpp"
@@ -50,11 +51,12 @@ struct LatticeScratch {
 /// Bit x of rows[y] is set if pixel (x, y) of the square still accepts segments.
 using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 
-/// The pixels to rasterize: a rectangle in one square of 32 x 32 pixels aligned to multiples of 32, and which of its
-/// pixels are open.
+/// The pixels to rasterize: a rectangle in one square of 32 x 32 pixels aligned to multiples of 32, which of its pixels
+/// are open, and the triangle surfaces at which segments are cut.
 struct MaskedRect {
   scene::PixelRect rect;
   const OpenPixels& open;
+  const LatticeFaces* faces = nullptr;  ///< null: none
 
   [[nodiscard]] int square_x() const { return rect.x0 & ~(SegmentWindows::side - 1); }
   [[nodiscard]] int square_y() const { return rect.y0 & ~(SegmentWindows::side - 1); }

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <map>
 #include <tuple>
 
 #include "datasets/boxes.hpp"
+#include "projection/surface_crossings.hpp"
 #include "projection/views.hpp"
 #include "support/instruction_sets.hpp"
 
@@ -62,7 +64,8 @@ struct Scene {
 
 /// All segments, with the image rasterized in rectangles of `tile` pixels a side, a power of two up to 32. If cells are
 /// rasterized together, segments do not identify their cell.
-Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr, std::size_t together = 1) {
+Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr, std::size_t together = 1,
+                const LatticeFaces* faces = nullptr) {
   const LatticeView view = scene.view();
   OpenPixels open;
   open.fill(~0u);
@@ -79,7 +82,7 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
         const auto cells = std::span(entries).subspan(from, std::min(together, entries.size() - from));
         const std::uint32_t t = together == 1 ? cells.front().tet : 0;
         stream.size = 0;
-        rasterize_lattice(view, {cells, {}}, {rect, open}, scratch, stream, counts);
+        rasterize_lattice(view, {cells, {}}, {rect, open, faces}, scratch, stream, counts);
         for (std::size_t i = 0; i < stream.size; ++i) {
           const int px = x + stream.pixel[i] % rect.width(), py = y + stream.pixel[i] / rect.width();
           rays[static_cast<std::size_t>(py) * scene.size.width + px].push_back(
@@ -158,6 +161,68 @@ TEST(LatticeRasterizer, HitsTheCellsOfDoublePrecisionInEveryKindOfView) {
     scene::Camera near_cuts = perspective({3.1, 2.3, 4.2}, 35);
     near_cuts.clipping_range = scene::ClippingRange{5.2, 6.1};
     expect_like_planes(mesh, near_cuts, size);
+  });
+}
+
+/// Up to four marks on each ray of one tile: inside segments, and at depths where cells meet.
+FaceMarks some_marks(const Scene& scene, const Rays& rays) {
+  FaceMarks marks;
+  marks.reset(rays.size());
+  for (std::uint32_t p = 0; p < rays.size(); ++p)
+    for (std::size_t i = 0; i < std::min<std::size_t>(p % 5, rays[p].size()); ++i) {
+      const Segment& s = rays[p][(7 * i + p) % rays[p].size()];
+      const double step = i % 2 == 0 ? s.front : s.front + 0.3 * (s.back - s.front);
+      marks.add({p, static_cast<std::uint32_t>(i), scene.lattice.depth(step), 0.5, 0, {}, {}, 0.5f, i != 3});
+    }
+  marks.sort();
+  return marks;
+}
+
+TEST(LatticeRasterizer, CutsSegmentsAtTheTrianglesThatTheirRaysMeet) {
+  const scene::TetMesh mesh = datasets::cube(5, 0.25);
+  tests::for_each_instruction_set([&](const char* name) {
+    SCOPED_TRACE(name);
+    for (const scene::Camera& camera : {oblique(), perspective({3.1, 2.3, 4.2}, 40)}) {
+      const Scene scene(mesh, camera, {32, 32});
+      const Rays whole = rasterized(scene, 32);
+      const FaceMarks marks = some_marks(scene, whole);
+      LatticeFaces faces;
+      faces.set(marks, scene.lattice, scene.space.perspective(), {});
+      const Rays cut = rasterized(scene, 32, nullptr, 16, &faces);
+      std::size_t parts = 0;
+      for (std::size_t p = 0; p < cut.size(); ++p) {
+        const auto first = faces.places() + faces.begin()[p], last = faces.places() + faces.begin()[p + 1];
+        EXPECT_EQ(std::adjacent_find(first, last, std::greater_equal<>()), last) << "each has a depth of its own";
+        double length = 0, length_of_whole = 0;
+        for (const Segment& s : whole[p]) length_of_whole += s.back - s.front;
+        for (const Segment& s : cut[p]) {
+          length += s.back - s.front;
+          EXPECT_TRUE(std::none_of(first, last, [&](std::int32_t at) { return s.front < at && at < s.back; })) << p;
+          // It is a part of a cell's segment, with this segment's scalars, up to the error of a face's depth.
+          const double reach = faces.most_reach() + 4;
+          EXPECT_TRUE(std::ranges::any_of(whole[p], [&](const Segment& of) {
+            const double steps = std::max(1, of.back - of.front), slope = (of.scalar_back - of.scalar_front) / steps;
+            const auto is_on = [&](std::int32_t depth, double scalar) {
+              return std::abs(scalar - (of.scalar_front + slope * (depth - of.front))) <=
+                     std::abs(slope) * reach + 128;  // 2^-24 of 2^30, twice
+            };
+            return s.front >= of.front - reach && s.back <= of.back + reach &&
+                   (s.front == s.back || (is_on(s.front, s.scalar_front) && is_on(s.back, s.scalar_back)));
+          })) << p;
+        }
+        EXPECT_NEAR(length, length_of_whole, faces.most_reach() * (last - first) * 4.0) << p;
+        parts += cut[p].size() - whole[p].size();
+      }
+      EXPECT_GT(parts, 200u);
+      SegmentStream own;
+      faces.append_own(own);
+      EXPECT_EQ(own.size, marks.own());
+      for (std::size_t i = 0; i < own.size; ++i) {
+        EXPECT_EQ(own.front[i], own.back[i]);
+        EXPECT_NEAR(crossing_of(own.scalar_front[i]).cosine, 0.5, 1e-6);
+        EXPECT_EQ(own.scalar_back[i], static_cast<float>(scene.lattice.scalar_step(0.5)));
+      }
+    }
   });
 }
 
