@@ -80,7 +80,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   const bool has_faces = settings.surfaces.has_faces();
   if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      (has_faces && !settings.surfaces.iso.empty()) || !projection::lattice_available())
+      !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, with_triangles(box, settings.surfaces));
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

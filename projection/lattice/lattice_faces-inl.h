@@ -7,6 +7,8 @@
 // How       A mark that is as near to the segment's front as the depth of a face may be inaccurate counts as in front
 //           of the segment, which then begins at the mark; in the same way, a segment ends at a mark near its back. So
 //           no matter is on the wrong side of a surface that coincides with faces of cells.
+//           A crossing of an iso-surface that is a segment of length zero, as near to marks as that, moves to the first
+//           mark of a larger number, or to the last mark; the order of numbers then decides (scene::SurfaceSet).
 // Accuracy  Scalars are computed in double precision. A scalar at a mark is less than the scalar of the higher end, so
 //           that a part below a step of the transfer function keeps an end below the step.
 // Bits      The parts depend only on the segment and the marks of its ray, which all processes have.
@@ -33,7 +35,9 @@ namespace HWY_NAMESPACE {
 /// Cuts a stream's segments at the marks of their rays.
 class FaceCuts {
  public:
-  HWY_INLINE FaceCuts(const LatticeFaces& faces, SegmentStream& out) : faces_(faces), out_(out) {}
+  /// `iso` is null if there are no iso-surfaces.
+  HWY_INLINE FaceCuts(const LatticeFaces& faces, const IsoView* iso, SegmentStream& out)
+      : faces_(faces), iso_(iso), out_(out) {}
 
   /// Cuts the segments from index `first` on.
   HWY_NOINLINE void cut(std::size_t first) {
@@ -89,11 +93,12 @@ class FaceCuts {
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
       out_.reserve(2 * (out_.size + most * lanes));
     const VI pixel = LoadU(d, out_.pixel.data() + i);
-    const Line line{LoadU(d, out_.front.data() + i), LoadU(d, out_.back.data() + i),
-                    LoadU(df, out_.scalar_front.data() + i), LoadU(df, out_.scalar_back.data() + i)};
     // The part that is not cut yet.
-    VI begin = line.front, end = line.back;
-    VF scalar = line.from;
+    VI begin = LoadU(d, out_.front.data() + i), end = LoadU(d, out_.back.data() + i);
+    VF scalar = IfThenElseZero(RebindMask(df, here), LoadU(df, out_.scalar_front.data() + i));
+    const Line line{begin, end, value_of(scalar), LoadU(df, out_.scalar_back.data() + i)};
+    const MI crossing = And(begin == end, RebindMask(d, scalar >= Set(df, LatticeMark::first)));
+    const VI number = number_of(scalar);
     MI left = here;  // lanes whose next mark may be at their segment
     for (std::size_t k = 0; k < most; ++k) {
       const VI kth = Set(d, static_cast<std::int32_t>(k));
@@ -103,7 +108,9 @@ class FaceCuts {
       const VI place = GatherIndex(d, faces_.places(), index), reach = GatherIndex(d, faces_.reaches(), index);
       const MI at_front = And(left, Not(Abs(place - line.front) > reach));
       begin = IfThenElse(at_front, place, begin);
-      const MI behind = AndNot(at_front, left);
+      const MI follows = GatherIndex(d, faces_.numbers(), index) > number;
+      left = AndNot(And(And(crossing, at_front), follows), left);
+      const MI behind = AndNot(Or(at_front, crossing), left);
       const MI at_back = And(behind, Not(Abs(place - line.back) > reach));
       end = IfThenElse(at_back, place, end);
       left = AndNot(Or(at_back, And(behind, place > line.back)), left);
@@ -117,11 +124,21 @@ class FaceCuts {
       scalar = IfThenElse(RebindMask(df, inside), value, scalar);
     }
     BlendedStore(begin, here, d, out_.front.data() + i);
-    BlendedStore(Max(begin, end), here, d, out_.back.data() + i);
+    BlendedStore(IfThenElse(crossing, begin, Max(begin, end)), here, d, out_.back.data() + i);
     BlendedStore(scalar, RebindMask(df, here), df, out_.scalar_front.data() + i);
   }
 
+  /// Returns the front scalars, with the marks of iso-surfaces replaced by the surfaces' values.
+  HWY_INLINE VF value_of(VF scalar) const {
+    const DF d;
+    const MF is_mark = scalar >= Set(d, LatticeMark::first);
+    if (iso_ == nullptr || AllFalse(d, is_mark)) return scalar;
+    const VI number = IfThenElseZero(RebindMask(DI(), is_mark), number_of(scalar));
+    return IfThenElse(is_mark, GatherIndex(d, iso_->surfaces->on_lattice_by_number().data(), number), scalar);
+  }
+
   const LatticeFaces& faces_;
+  const IsoView* iso_;
   SegmentStream& out_;
 };
 

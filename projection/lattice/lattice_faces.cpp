@@ -16,7 +16,7 @@ constexpr double most_reach_of_mark = 0x1p20;
 void LatticeFaces::set(const FaceMarks& marks, const scene::Lattice& lattice, bool perspective,
                        std::span<const Step> steps) {
   begin_.assign(marks.begin().begin(), marks.begin().end());
-  place_.clear(), reach_.clear(), own_.clear();
+  place_.clear(), reach_.clear(), number_.clear(), own_.clear();
   most_reach_ = 0;
   for (const FaceMark& mark : marks.marks()) {
     const bool first = static_cast<std::int32_t>(place_.size()) == begin_[mark.pixel];
@@ -25,6 +25,7 @@ void LatticeFaces::set(const FaceMarks& marks, const scene::Lattice& lattice, bo
     const double tolerance = std::min(std::ceil(mark.tolerance / lattice.depth_unit), most_reach_of_mark);
     reach_.push_back(face_error(perspective) + static_cast<std::int32_t>(tolerance));
     most_reach_ = std::max(most_reach_, reach_.back());
+    number_.push_back(static_cast<std::int32_t>(mark.number));
     if (mark.own)
       own_.push_back({static_cast<std::int32_t>(mark.pixel), place_.back(), LatticeMark::of({mark.number, mark.cosine}),
                       lattice_scalars(mark.value, mark.value, steps, lattice).back});

@@ -19,7 +19,8 @@ namespace tessera::projection {
 ///
 /// A mark becomes a segment of length zero (surface_crossings.hpp), and the rasterizer's segments are cut there
 /// (lattice_faces-inl.h). Segments in front of a mark end at its step and segments behind it begin there: the order of
-/// segments, by front and then by back, puts the mark between them.
+/// segments, by front and then by back, puts the mark between them. Marks of one step are in the order of their
+/// numbers.
 class LatticeFaces {
  public:
   /// The largest error of the depth of a cell's face, in steps, with one step for the rounding of a mark: 17 for
@@ -37,6 +38,8 @@ class LatticeFaces {
   /// The largest distance, in steps, of a face of a cell from a mark in the same plane.
   [[nodiscard]] const std::int32_t* reaches() const { return reach_.data(); }
   [[nodiscard]] std::int32_t most_reach() const { return most_reach_; }
+  /// Each mark's number (FaceMark).
+  [[nodiscard]] const std::int32_t* numbers() const { return number_.data(); }
 
   /// Appends the marks that this process owns. SegmentStream::lit must be set.
   void append_own(SegmentStream& out) const;
@@ -46,7 +49,7 @@ class LatticeFaces {
     std::int32_t pixel, place;
     float mark, scalar;
   };
-  std::vector<std::int32_t> begin_, place_, reach_;
+  std::vector<std::int32_t> begin_, place_, reach_, number_;
   std::int32_t most_reach_ = 0;
   std::vector<Own> own_;
 };
