@@ -192,10 +192,11 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
         continue;
       // The depth is a mean with the edge functions as weights; its slope is a mean with the changes of the edge
       // functions as weights.
+      const double whole = 1 / (ab.value + bc.value + ca.value);
       std::array<double, 2> slope{}, slope_error{};
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t axis = 0; axis < 2; ++axis) {
-          const double weight = growths[i][axis] / (ab.value + bc.value + ca.value);
+          const double weight = growths[i][axis] * whole;
           slope[axis] += weight * (c[i].depth - depth);
           slope_error[axis] += std::abs(weight) * (2 * tolerance + coplanar * std::abs(c[i].depth - depth));
         }
