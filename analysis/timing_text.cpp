@@ -53,6 +53,9 @@ std::string head(const RunTime& run) {
   if (!of.exchange.empty()) text += fmt::format("; exchange {}", of.exchange);
   if (!of.rasterizer.empty()) text += fmt::format("; {}", of.rasterizer);
   if (!of.integrator.empty()) text += fmt::format("; {}", of.integrator);
+  if (of.parts > 0)
+    text += fmt::format("; {:.3g} % in double precision",
+                        100 * static_cast<double>(of.parts_in_double_precision) / static_cast<double>(of.parts));
   text += fmt::format("\n  {:.3f} s for the frames, {:.1f} ms per frame", run.elapsed_us * 1e-6,
                       run.elapsed_us * 1e-3 / run.frames);
   if (run.kilotets_per_second) text += fmt::format(", {:.0f} kTets/s", *run.kilotets_per_second);

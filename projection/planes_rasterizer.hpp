@@ -39,6 +39,8 @@ struct RasterCounts {
   std::uint64_t exact_sign_tests = 0;  ///< planes: edge signs decided by exact arithmetic
   /// Scanline: front-face fragments that were lost because the pixel had no back-face fragment.
   std::uint64_t unpaired = 0;
+  /// Lattice: segments of irregular cells, which are computed in double precision.
+  std::uint64_t irregular_segments = 0;
 };
 
 /// The `planes` rasterizer: rasterizes cells to ray segments for the pixels of one rectangle.

@@ -197,7 +197,7 @@ class Film final : public Sink {
     TraceRun traced;
     std::string process = fmt::format("rank {}", job_.rank());
     if (step_.is_open() || (overlaps_ && !options_.is_grid()))
-      traced = trace_run(options_, step_.tets(), frames_.front(), output_.rendered());
+      traced = trace_run(options_, step_.tets(), frames_.front(), output_);
     if (options_.is_grid()) {
       traced.ranks = job_.size();
       traced.integrator = method_word(options_.settings.integrator.kind);

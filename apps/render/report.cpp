@@ -168,6 +168,11 @@ Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
           {"seed", settings.tile_seed}};
 }
 
+InDoublePrecision in_double_precision(const FrameStatistics& statistics, bool is_grid) {
+  if (is_grid) return {statistics.grid.pixels_again, statistics.grid.rays};
+  return {statistics.mesh.segments_in_double_precision, statistics.mesh.segments};
+}
+
 Json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record) {
   Json outputs = Json::array();
   for (const auto& output : frame.outputs) outputs.push_back(output.string());
@@ -213,8 +218,9 @@ std::string cells_line(const MeshCounts& counts) {
 }
 
 std::string higher_order_note(double error, double accuracy) {
-  std::string note = fmt::format("tets that replace its higher-order cells change pixels of the first image by {}",
-                                 error < 1 ? fmt::format("about {:.2g}", error) : "any amount");
+  std::string note =
+      fmt::format("higher-order cells are replaced by tets, which changes pixels of the first image by {}",
+                  error < 1 ? fmt::format("about {:.2g}", error) : "any amount");
   if (error > accuracy)
     note += fmt::format(", more than --accuracy {:.2g}; --higher-order-tets allows more of them", accuracy);
   return note;
@@ -255,6 +261,15 @@ std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame
   return line + fmt::format("{}, {}{}", work, time_words(record.frame_ms.front()), balance_words(options, record));
 }
 
+/// Returns what a frame computed in double precision, if that took about a tenth of its time or more.
+std::string double_precision_words(const FrameStatistics& statistics, bool is_grid) {
+  const InDoublePrecision part = in_double_precision(statistics, is_grid);
+  // A segment or pixel takes about five times as long as in float lanes.
+  if (part.parts == 0 || 50 * part.parts < part.all) return "";
+  const double percent = 100 * static_cast<double>(part.parts) / static_cast<double>(part.all);
+  return fmt::format(", {:.3g} % of the {} in double precision", percent, is_grid ? "pixels" : "ray segments");
+}
+
 std::string run_line(const RenderOptions& options, const Description& data, const LoadedTransferFunction& loaded,
                      const std::vector<FilmFrame>& frames, const FilmFrame& first, const FrameRecord& record) {
   const FrameStatistics& statistics = record.statistics;
@@ -267,16 +282,17 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
   if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
   if (options.is_grid()) {
     const GridCounters& s = statistics.grid;
-    line +=
-        fmt::format("; {} of {} bricks invisible, {} loaded; {} voxels visited; {}, {}, {}{}", s.bricks_invisible,
-                    s.bricks_total, s.bricks_loaded, s.voxels_visited, method_words(options.settings),
-                    statistics.instruction_set, time_words(record.frame_ms.front()), balance_words(options, record));
+    line += fmt::format("; {} of {} bricks invisible, {} loaded; {} voxels visited; {}, {}{}, {}{}", s.bricks_invisible,
+                        s.bricks_total, s.bricks_loaded, s.voxels_visited, method_words(options.settings),
+                        statistics.instruction_set, double_precision_words(statistics, true),
+                        time_words(record.frame_ms.front()), balance_words(options, record));
   } else {
     const FrameCounters& s = statistics.mesh;
-    line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {}", s.tets_projected,
+    line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}{}, {}", s.tets_projected,
                         s.tets_invisible, s.tets_outside_view, word(options.settings.mesh.rasterizer),
                         method_line(options.settings.integrator) + (options.settings.mesh.shading ? ", shaded" : ""),
-                        statistics.instruction_set, time_words(record.frame_ms.front()));
+                        statistics.instruction_set, double_precision_words(statistics, false),
+                        time_words(record.frame_ms.front()));
     if (!options.settings.mesh.device.backends.empty())
       line += fmt::format("; composited by {}", statistics.composited_on);
     if (statistics.overlapping) line += "; ray segments exchanged, because cells of several ranks overlap";

@@ -38,6 +38,12 @@ nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);
 /// The layout of a job that renders a mesh.
 nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const Roles& roles);
 
+/// The parts of frames that were computed in double precision: ray segments of meshes, or pixels of grids.
+struct InDoublePrecision {
+  std::uint64_t parts = 0, all = 0;
+};
+InDoublePrecision in_double_precision(const FrameStatistics& statistics, bool is_grid);
+
 /// A frame's number, images, view, times, counters, balance and verification. Without a record, the entry states that
 /// the frame was skipped.
 nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);

@@ -83,6 +83,8 @@ void RunOutput::add(const FilmFrame& frame, const FrameRecord& record) {
       met_ = met_ && record.verification->met;
     }
   }
+  const auto [parts, all] = apps::in_double_precision(record.statistics, options_.is_grid());
+  in_double_precision_.parts += parts, in_double_precision_.all += all;
   line_.finish_frames(++done_, ++rendered_);
 }
 
@@ -106,7 +108,7 @@ ExitCode RunOutput::finish() {
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
 }
 
-TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, const RunOutput& output) {
   const Json method = method_json(options, 1);
   TraceRun traced;
   traced.version = version();
@@ -114,7 +116,9 @@ TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmF
   traced.build = build_facts();
   traced.input = options.input().string();
   traced.tets = tets;
-  traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
+  traced.frames = static_cast<int>(output.rendered()) * std::max(options.repeat, 1);
+  traced.parts = output.in_double_precision().all;
+  traced.parts_in_double_precision = output.in_double_precision().parts;
   traced.width = frame.size.width;
   traced.height = frame.size.height;
   traced.threads = threads_for(options.settings.threads);

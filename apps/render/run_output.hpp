@@ -39,6 +39,8 @@ class RunOutput {
   [[nodiscard]] StatusLine& line() { return line_; }
 
   [[nodiscard]] std::size_t rendered() const { return rendered_; }
+  /// Sums over the rendered frames.
+  [[nodiscard]] const InDoublePrecision& in_double_precision() const { return in_double_precision_; }
 
  private:
   void skip_to(std::size_t frame);
@@ -54,6 +56,7 @@ class RunOutput {
   bool met_ = true;
   std::size_t done_ = 0;  ///< number of frames, rendered or skipped, that have been added in order
   std::size_t rendered_ = 0;
+  InDoublePrecision in_double_precision_;
 };
 
 /// Returns `frame_ms median X min Y`, in milliseconds. The median of an even number of times is the mean of the middle
@@ -63,7 +66,7 @@ std::string frame_ms_line(std::vector<double> times);
 /// Writes JSON to a file, which appears by rename. Text that is not UTF-8 is replaced.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-/// Metadata that a trace stores about its run.
-TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered);
+/// Metadata that a trace stores about its run. `frame` is one of the frames.
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, const RunOutput& output);
 
 }  // namespace tessera::apps

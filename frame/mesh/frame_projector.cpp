@@ -106,6 +106,7 @@ class Worker final : public TileWorker {
     statistics.peak_buffer_bytes += counts.peak_bytes;
     statistics.exact_sign_tests += counts.raster.exact_sign_tests;
     statistics.unpaired += counts.raster.unpaired;
+    statistics.segments_in_double_precision += counts.raster.irregular_segments;
     statistics.tiles_split += counts.tiles_split;
     if (cells_ != nullptr) statistics.cells_on_device += cells_->cells();
   }
@@ -279,6 +280,7 @@ FrameStatistics count(const FrameTask& frame, const TeamTask& team, const projec
   statistics.tets_projected = culled.projected;
   statistics.on_lattice = frame.lattice != nullptr;
   for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
+  if (!statistics.on_lattice) statistics.segments_in_double_precision = statistics.segments;
   return statistics;
 }
 

@@ -19,6 +19,7 @@ struct FrameCounters {
   std::uint64_t tets_between_pixels = 0;
   std::uint64_t tets_projected = 0;
   std::uint64_t segments = 0;
+  std::uint64_t segments_in_double_precision = 0;
   std::uint64_t max_segments_alive = 0;
   std::uint64_t peak_buffer_bytes = 0;
   std::uint64_t exact_sign_tests = 0;
@@ -63,7 +64,7 @@ using FrameCounter = Counter<FrameCounters>;
 using GridCounter = Counter<GridCounters>;
 
 /// All counters of meshes, in the order of reports. tets_total is the sum of the four counters that follow it.
-inline constexpr std::array<FrameCounter, 16> frame_counters{{
+inline constexpr std::array<FrameCounter, 17> frame_counters{{
     {"tets_total", &FrameCounters::tets_total, FrameCounter::Together::sum, false, "tetrahedra of the mesh"},
     {"tets_invisible", &FrameCounters::tets_invisible, FrameCounter::Together::sum, false,
      "never projected: the transfer function is zero over all of their scalars"},
@@ -74,6 +75,8 @@ inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"tets_projected", &FrameCounters::tets_projected, FrameCounter::Together::sum, false, "what is left"},
     {"segments", &FrameCounters::segments, FrameCounter::Together::sum, false,
      "ray segments composited, or left out behind opaque ones"},
+    {"segments_in_double_precision", &FrameCounters::segments_in_double_precision, FrameCounter::Together::sum, false,
+     "segments of the cells that float lanes cannot represent; all if the whole frame is in double precision"},
     {"max_segments_alive", &FrameCounters::max_segments_alive, FrameCounter::Together::largest, false,
      "most segments that one thread held at once"},
     {"peak_buffer_bytes", &FrameCounters::peak_buffer_bytes, FrameCounter::Together::sum, false,

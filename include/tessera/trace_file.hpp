@@ -29,6 +29,9 @@ struct TraceRun {
   std::string exchange;                 ///< "segments" or "runs"
   std::string rasterizer, integrator;   ///< as named on the command line
   std::string commit{}, build{};        ///< commit and build of the program, as in tessera/version.hpp
+  /// Ray segments of a mesh, or pixels of a grid, of all frames without repetitions; and how many of them were computed
+  /// in double precision.
+  std::uint64_t parts = 0, parts_in_double_precision = 0;
   bool operator==(const TraceRun&) const = default;
 };
 

@@ -147,6 +147,8 @@ nlohmann::ordered_json to_json(const TraceRun& run) {
   add_number("projectors", run.projectors);
   add_number("compositors", run.compositors);
   add_number("threads_per_rank", run.threads);
+  add_number("parts", run.parts);
+  add_number("parts_in_double_precision", run.parts_in_double_precision);
   add_word("exchange", run.exchange);
   add_word("rasterizer", run.rasterizer);
   add_word("integrator", run.integrator);

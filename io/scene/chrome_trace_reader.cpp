@@ -142,7 +142,10 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
                                         {"peer", &Event::peer}})
         if (key_ == name) event_.*field = value;
     } else if (here() == Place::run) {
-      if (key_ == "tets") file_.run.tets = static_cast<std::uint64_t>(run_number(value, 1e15));
+      for (const auto& [name, field] : {std::pair{"tets", &TraceRun::tets},
+                                        {"parts", &TraceRun::parts},
+                                        {"parts_in_double_precision", &TraceRun::parts_in_double_precision}})
+        if (key_ == name) file_.run.*field = static_cast<std::uint64_t>(run_number(value, 9e15));
       for (const auto& [name, field] : {std::pair{"frames", &TraceRun::frames},
                                         {"width", &TraceRun::width},
                                         {"height", &TraceRun::height},

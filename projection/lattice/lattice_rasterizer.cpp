@@ -102,6 +102,7 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
   const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);
   out.reserve(out.size + s.size);
+  counts.irregular_segments += s.size;
   const std::size_t first = out.size;
   for (std::size_t i = 0; i < s.size; ++i) {
     out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));

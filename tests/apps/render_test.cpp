@@ -40,6 +40,26 @@ TEST(Render, PrintsItsChoicesInOneLineOnStderrAndNothingOnStdout) {
   EXPECT_EQ(run.out, "");
 }
 
+TEST(Render, SaysHowMuchIsInDoublePrecision) {
+  const Folder folder;
+  const std::string cube = folder.cube(), picture = folder / "a.png", trace = folder / "trace.json";
+  const auto said = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"render", cube, "-o", picture, "--size=16x16", "--timing", trace};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = tessera(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return std::pair(run.err, tessera({"timing", trace}).out);
+  };
+  const auto [line, times] = said({"--without", "lattice"});
+  EXPECT_NE(line.find(", 100 % of the ray segments in double precision"), std::string::npos) << line;
+  EXPECT_NE(times.find("; 100 % in double precision"), std::string::npos) << times;
+  const auto [line_of_lanes, times_of_lanes] = said({});
+  const bool has_lanes =
+      line_of_lanes.find("AVX") != std::string::npos || line_of_lanes.find("SSE4") != std::string::npos;
+  EXPECT_EQ(line_of_lanes.find("double precision") == std::string::npos, has_lanes) << line_of_lanes;
+  EXPECT_NE(times_of_lanes.find(" % in double precision"), std::string::npos) << times_of_lanes;
+}
+
 TEST(Render, QuietLeavesNothingOnStderr) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "16x16", "--quiet"});

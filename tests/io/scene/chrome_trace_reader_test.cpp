@@ -23,8 +23,9 @@ TEST(ChromeTraceReader, ReadsBackWhatWasWritten) {
   second.add({"frame", 0, 0, 50, 0, 6, 0, 0, TraceRole::compositor});
   const std::array<std::string, 2> events = {chrome_trace_events(first, 0, "rank 0", 0),
                                              chrome_trace_events(second, 1, "rank 1", -1000)};
-  const TraceRun run{"1.2.3", "wake.vtu", 516096, 8,        640,     480,        2,           1,
-                     1,       2,          "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
+  TraceRun run{"1.2.3", "wake.vtu", 516096, 8,        640,     480,        2,           1,
+               1,       2,          "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
+  run.parts = 3000000000, run.parts_in_double_precision = 7;
   const test::TemporaryFolder folder;
   write_chrome_trace(events, run, folder / "trace.json");
   const TraceFile file = read_chrome_trace(folder / "trace.json");

@@ -89,6 +89,7 @@ TEST(ChromeTrace, OneFileHoldsAllRanksAndWhatWasRun) {
   const test::TemporaryFolder folder;
   TraceRun run{"1.2.3", "wake.vtu", 516096, 8,        640,     480,        4,           3,
                1,       2,          "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
+  run.parts = 1000000, run.parts_in_double_precision = 20;
   write_chrome_trace(events, run, folder / "trace.json");
   const auto root = json::parse(test::contents(folder / "trace.json"));
   std::set<int> ranks;
@@ -107,6 +108,8 @@ TEST(ChromeTrace, OneFileHoldsAllRanksAndWhatWasRun) {
                          {"projectors", 3},
                          {"compositors", 1},
                          {"threads_per_rank", 2},
+                         {"parts", 1000000},
+                         {"parts_in_double_precision", 20},
                          {"exchange", "runs"},
                          {"rasterizer", "planes"},
                          {"integrator", "exact"}};
