@@ -16,7 +16,7 @@ if (reason) {
 
 const folder = mkdtempSync(join(tmpdir(), "tessera-start-"));
 const with_inlet = write_flow_with_inlet(folder), series = write_flow_series(folder);
-writeFileSync(join(folder, "flag.stl"), "solid flag\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.5\nvertex 2 0 0.5\nvertex 0 1 0.5\nendloop\nendfacet\nendsolid flag\n");
+writeFileSync(join(folder, "flag.stl"), "solid flag\nfacet normal 0 -1 0\nouter loop\nvertex 0 -0.2 0\nvertex 1 -0.2 0\nvertex 0 -0.2 0.6\nendloop\nendfacet\nendsolid flag\n");
 const grid = join(folder, "ripples.vti");
 let browser, server, page;
 
