@@ -18,7 +18,7 @@
 namespace tessera::analysis {
 namespace {
 
-/// The stages that share a colour in a bar, from the bottom up. Stages without a kind belong to the last kind.
+/// The stages that share a colour in a bar, from the bottom up. Stages that no kind lists are added to the last.
 struct Kind {
   std::string_view label;
   std::uint32_t rgb;

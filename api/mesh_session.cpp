@@ -191,8 +191,9 @@ class MeshOnRanks final : public Session::State {
   /// Throws if the mesh has too many tets for raw segments, which are sent with the index of their tet in 32 bits.
   void check_exchange(Exchange exchange) const {
     if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
-      throw scene::bad_input(fmt::format(
-          "`exchange` segments: {} tets are more than 2^32, which only runs support; use runs", data().facts.tets));
+      throw scene::bad_input(
+          fmt::format("`exchange` segments: supports at most 2^32 tets, and the mesh has {}; use `exchange` runs",
+                      data().facts.tets));
   }
 
   /// The tets that this rank projects: the part that the rank has opened or, if every rank has the whole mesh, the

@@ -40,9 +40,7 @@ constexpr std::array<Kind, 5> kinds{{
     {"ripples", "volume of a smooth field on [-1, 1]^3, which the benchmarks use", smooth_field, 64},
     {"radial", "volume whose values decrease from its center to its corners", radial_field, 64},
     {"head", "volume of a skull in a case, about half of it empty: values above 0.25 show the skull", head_field, 64},
-    {"turbulence",
-     "volume of two fluids that mix, rough everywhere: values from 0.3 to 0.7 show the region between them",
-     turbulence_field, 64},
+    {"turbulence", "volume of two fluids that mix, rough everywhere; 0.3 to 0.7: between them", turbulence_field, 64},
     {"checker", "volume whose values alternate between 0 and 1 from point to point", nullptr, 16},
 }};
 

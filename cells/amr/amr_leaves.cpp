@@ -128,13 +128,13 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
       const double own = amr.lattice.spacing[axis] * size, at = (low_end(part, a) - anchor[axis]) / own;
       if (!(std::abs(part.spacing[a] / own - 1) <= 1e-3))
         throw scene::bad_input(
-            fmt::format("{}: its spacing along {} is {}, but that of its level is {}; write it again",
+            fmt::format("{}: its spacing along {} is {}, but that of its level is {}; write the file again",
                         where(part, source), "xyz"[a], part.spacing[a], own));
       if (!(std::abs(at) * size < most_corners)) throw too_long(std::abs(at) * size, source);
       if (!(std::abs(at - std::round(at)) < 0.02))
         throw scene::bad_input(
             fmt::format("{}: it begins {} cells of its level from the coarsest block along {}, but this distance has "
-                        "to be a whole number of cells; write it again",
+                        "to be a whole number of cells; write the file again",
                         where(part, source), at, "xyz"[a]));
       low[a] = std::llround(at) * size;
       const std::int64_t high = cells_along(part, a) < most_corners ? low[a] + cells_along(part, a) * size : INT64_MAX;

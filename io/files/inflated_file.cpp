@@ -40,7 +40,7 @@ InflatedFile::InflatedFile(const InputFile& file, const system::InflateLimit& li
   if (!descriptor_.is_open()) throw std::bad_alloc();
   const system::PositionalFile packed(file.path);
   content_.size = system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.name);
-  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.name));
+  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it is empty; write the file again", file.name));
   // The path contains the process id, because the helper opens it, too.
   content_.path = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
   content_.is_gzip = false;

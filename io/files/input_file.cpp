@@ -36,7 +36,7 @@ system::PositionalFile open_input(const std::filesystem::path& file) {
   const std::uint64_t size = opened.size();
   // An empty .foam file only marks its directory as an OpenFOAM case.
   if (size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
-    throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.string()));
+    throw scene::bad_input(fmt::format("{}: it is empty; write the file again", file.string()));
   if (is_git_lfs_pointer(opened, size))
     throw scene::bad_input(fmt::format(
         "{}: it is a Git LFS pointer, not the file itself; `git lfs pull` downloads the file", file.string()));

@@ -40,7 +40,7 @@ constexpr std::array rows = {
         begins_as_vtu, {.container = Container::vtk_xml, .read_mesh = read_vtk_xml}),
     row("VTK XML curvilinear grid", ".vts .pvts", mesh, {}, pieces, begins_as_vts,
         {.container = Container::vtk_xml, .read_mesh = read_vtk_xml}),
-    row("VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", mesh, {}, "all volumes among them; surfaces left out",
+    row("VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", mesh, {}, "all volumes in the list; surfaces left out",
         begins_as_vtk_list, {.container = Container::vtk_xml, .read_mesh = read_vtk_xml}),
     row("VTK XML AMR", ".vth .vthb", mesh, by_vtk,
         "overlapping or not; finest cells; `smooth` continuous across levels", begins_as_vtk_amr,

@@ -186,7 +186,7 @@ scene::Image read_exr(const std::filesystem::path& file) {
     std::string reason = error.what();
     std::ranges::replace(reason, '\n', ' ');
     throw scene::bad_input(
-        fmt::format("{}: is not an OpenEXR image that can be read ({}); write it again", file.string(), reason));
+        fmt::format("{}: is not an OpenEXR image that can be read ({}); write the file again", file.string(), reason));
   }
 }
 

@@ -53,7 +53,7 @@ scene::Image read_pfm(const std::filesystem::path& file) {
   const auto expected = static_cast<std::uintmax_t>(*width * *height) * 3 * sizeof(float);
   const auto begin = static_cast<std::uintmax_t>(stream.tellg());
   if (const auto bytes = std::filesystem::file_size(file); bytes != begin + expected)
-    throw fault(fmt::format("has {} bytes, but its header requires {}; write it again", bytes, begin + expected));
+    throw fault(fmt::format("has {} bytes, but its header requires {}; write the file again", bytes, begin + expected));
 
   scene::Image image({static_cast<int>(*width), static_cast<int>(*height)});
   std::vector<float> row(3 * static_cast<std::size_t>(*width));

@@ -69,7 +69,7 @@ OpenedAmr open_hyper_trees(const InputFile& input) {
     const std::string* const piece = element.find("Source");
     if (piece == nullptr || piece->empty())
       throw scene::bad_input(
-          fmt::format("{}: piece {} has no Source; write it again", file.string(), amr.files.size()));
+          fmt::format("{}: piece {} has no Source; write the file again", file.string(), amr.files.size()));
     require_room(amr, file);
     ForeignFile opened = open_foreign(helper, file.parent_path() / *piece, {{"reader", "hyper_trees"}});
     for (ForeignPart& part : opened.contents.parts) part.name = piece->c_str();

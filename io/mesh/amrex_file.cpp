@@ -162,14 +162,14 @@ class PlotFile {
     std::size_t fields = 0;
     fab.stored = parse_amrex_fab(line, fields, fmt::format("{}: at byte {}", file.string(), fab.offset));
     if (fields != header_.fields.size())
-      throw refuse(fmt::format("it has {} fields there, but the Header lists {}; write it again", fields,
+      throw refuse(fmt::format("it has {} fields there, but the Header lists {}; write the file again", fields,
                                header_.fields.size()));
     std::uint64_t bytes = format->bytes * fields;
     for (std::size_t a = 0; a < 3; ++a) {
       if (fab.stored.low[a] > fab.box.low[a] || fab.stored.high[a] < fab.box.high[a])
-        throw refuse(
-            fmt::format("its values belong to cells {} to {} along {}, but its box has cells {} to {}; write it again",
-                        fab.stored.low[a], fab.stored.high[a], "xyz"[a], fab.box.low[a], fab.box.high[a]));
+        throw refuse(fmt::format(
+            "its values belong to cells {} to {} along {}, but its box has cells {} to {}; write the file again",
+            fab.stored.low[a], fab.stored.high[a], "xyz"[a], fab.box.low[a], fab.box.high[a]));
       if (__builtin_mul_overflow(bytes, static_cast<std::uint64_t>(fab.stored.cells(a)), &bytes)) bytes = UINT64_MAX;
     }
     if (begin > size || bytes > size - begin)

@@ -33,15 +33,15 @@ class Words {
     const std::string_view text = word(what);
     const auto number = number_of<std::int64_t>(text);
     if (!number || *number < low || *number > high)
-      fail(fmt::format("{} is {}, but must be a whole number from {} to {}; write it again", what, quote(text), low,
-                       high));
+      fail(fmt::format("{} is {}, but must be a whole number from {} to {}; write the file again", what, quote(text),
+                       low, high));
     return *number;
   }
 
   double number(const char* what) {
     const std::string_view text = word(what);
     const std::optional<double> number = parse_number(text);
-    if (!number) fail(fmt::format("{} is {}, but must be a number; write it again", what, quote(text)));
+    if (!number) fail(fmt::format("{} is {}, but must be a number; write the file again", what, quote(text)));
     return *number;
   }
 
@@ -55,7 +55,7 @@ class Words {
       if (count(what, 0, 1) != 0)
         fail(fmt::format("{} has values at nodes, which are not supported; write values at cells", what));
     for (std::size_t a = 0; a < 3; ++a)
-      if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write it again", what));
+      if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write the file again", what));
     return box;
   }
 
@@ -75,7 +75,7 @@ AmrexHeader parse_amrex_header(std::string_view text, const std::string& source)
   words.line();
   for (std::int64_t f = 0; f < fields; ++f) {
     header.fields.emplace_back(trimmed(words.line()));
-    if (header.fields.back().empty()) words.fail(fmt::format("field {} has no name; write it again", f));
+    if (header.fields.back().empty()) words.fail(fmt::format("field {} has no name; write the file again", f));
   }
   if (const auto dimensions = words.count("the number of dimensions", 1, 3); dimensions != 3)
     throw scene::bad_input(fmt::format("{}: it has {} dimensions; give a data set of three", source, dimensions));
@@ -112,7 +112,7 @@ std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t field
   words.word("how values are spread over files");
   if (const auto stored = words.count("the number of fields", 0, most_fields);
       stored != static_cast<std::int64_t>(fields))
-    words.fail(fmt::format("it has {} fields, but the Header lists {}; write it again", stored, fields));
+    words.fail(fmt::format("it has {} fields, but the Header lists {}; write the file again", stored, fields));
   words.word("the number of cells around a box");
   const auto boxes = words.count("the number of boxes", 1, most_boxes);
   words.word("the number after the number of boxes");
@@ -121,7 +121,7 @@ std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t field
   words.count("the number of boxes' values", boxes, boxes);
   for (AmrexFab& fab : fabs) {
     if (const std::string_view key = words.word("FabOnDisk:"); key != "FabOnDisk:")
-      words.fail(fmt::format("it has {} where FabOnDisk: is required; write it again", quote(key)));
+      words.fail(fmt::format("it has {} where FabOnDisk: is required; write the file again", quote(key)));
     fab.file = words.word("a file's name");
     fab.offset = static_cast<std::uint64_t>(words.count("where values begin", 0, std::int64_t{1} << 50));
   }

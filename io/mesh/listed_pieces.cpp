@@ -51,7 +51,7 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
     if (element.name != "Piece") return;
     const std::string* const name = element.find("Source");
     if (name == nullptr || name->empty())
-      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it again", source, count));
+      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write the file again", source, count));
     list.pieces.push_back({file.parent_path() / *name, source, block, ""});
     ++count;
   });
@@ -103,7 +103,7 @@ void require_piece(const ListedPiece& piece) {
   if (type.empty()) {
     require_no_utf16(beginning, source);
     throw scene::bad_input(fmt::format(
-        "{}: it is a piece of {}, but does not begin like a VTK XML file; write it again", source, piece.list));
+        "{}: it is a piece of {}, but does not begin like a VTK XML file; write the file again", source, piece.list));
   }
   if (type != "UnstructuredGrid")
     throw scene::bad_input(

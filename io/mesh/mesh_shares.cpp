@@ -73,7 +73,7 @@ cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files
     const char* const reader = exodus_reader({read_beginning(files[k], 4096)});
     if (reader == nullptr)
       throw scene::bad_input(fmt::format(
-          "{}: it states that it is one of {} Exodus files of a mesh, but is not an Exodus file; write it again",
+          "{}: it states that it is one of {} Exodus files of a mesh, but is not an Exodus file; write the file again",
           files[k].string(), files.size()));
     add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
   }

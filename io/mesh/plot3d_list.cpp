@@ -21,7 +21,7 @@ std::vector<Plot3dStep> parse_plot3d_list(std::string_view text, const std::file
   for (const nlohmann::json& entry : *files) {
     const auto fail = [&](const char* what) {
       return scene::bad_input(
-          fmt::format("{}: entry {} of \"filenames\" {}; write it again", source, steps.size(), what));
+          fmt::format("{}: entry {} of \"filenames\" {}; write the file again", source, steps.size(), what));
     };
     if (!entry.is_object()) throw fail("is not an object");
     const auto file_of = [&](const char* key) -> std::filesystem::path {

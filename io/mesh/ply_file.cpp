@@ -57,8 +57,8 @@ class PlyParser {
       for (const std::uint32_t v : result_.surface.facets[f].polygons.front())
         if (v >= points)
           throw scene::bad_input(
-              fmt::format("{}: face {} uses vertex {}, but the file has only {} vertices; write it again", source_, f,
-                          static_cast<std::int64_t>(v), points));
+              fmt::format("{}: face {} uses vertex {}, but the file has only {} vertices; write the file again",
+                          source_, f, static_cast<std::int64_t>(v), points));
     return std::move(result_);
   }
 

@@ -53,7 +53,7 @@ class Lines {
   T number(const char* what) {
     T value{};
     const Scanned found = scanner_.number(value);
-    if (found == Scanned::nothing) fail(fmt::format("{} is missing; write it again", what));
+    if (found == Scanned::nothing) fail(fmt::format("{} is missing; write the file again", what));
     if (found == Scanned::other_word)
       fail(fmt::format("'{}' is not a {}; correct it", scanner_.word().substr(0, 20), what));
     // 1e999 becomes NaN: a cell with this number is blanked.

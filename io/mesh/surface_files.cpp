@@ -35,7 +35,7 @@ cells::Surface read_poly(const std::filesystem::path& file, const std::string& s
 
 void require_sound(const cells::Surface& surface, const std::string& source) {
   if (surface.facets.empty())
-    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it again", source));
+    throw scene::bad_input(fmt::format("{}: the surface has no faces; write the file again", source));
   for (std::size_t v = 0; v < surface.points.size(); ++v)
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(surface.points[v][k]))

@@ -29,7 +29,7 @@ tessera::TriangleMesh read_triangles(const InputFile& file) {
     for (const cells::Polygon& polygon : facet.polygons) cutter.cut(polygon, mesh.points, mesh.triangles);
   }
   if (mesh.triangles.empty())
-    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it again", source));
+    throw scene::bad_input(fmt::format("{}: the surface has no faces; write the file again", source));
   return mesh;
 }
 

@@ -109,7 +109,7 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
     }
     if (element.name != "DataSet") return;
     const auto fail = [&](const std::string& what) {
-      return scene::bad_input(fmt::format("{}: DataSet {} {}; write it again", source, entries.size(), what));
+      return scene::bad_input(fmt::format("{}: DataSet {} {}; write the file again", source, entries.size(), what));
     };
     Entry entry{0, false, 0, {}};
     if (const std::string* time = element.find("timestep")) {
@@ -127,7 +127,7 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
     entry.file = input.parent_path() / *file;
     entries.push_back(std::move(entry));
   });
-  if (entries.empty()) throw scene::bad_input(fmt::format("{}: it lists no DataSet; write it again", source));
+  if (entries.empty()) throw scene::bad_input(fmt::format("{}: it lists no DataSet; write the file again", source));
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& a, const Entry& b) { return a.time != b.time ? a.time < b.time : a.part < b.part; });
   std::vector<TimeStep> steps;
@@ -147,11 +147,12 @@ std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesy
   if (!json.is_object() || files == json.end() || !files->is_array())
     throw scene::bad_input(
         fmt::format("{}: it has no list \"files\"; check that it is a ParaView file series", source));
-  if (files->empty()) throw scene::bad_input(fmt::format("{}: it lists no file; write it again", source));
+  if (files->empty()) throw scene::bad_input(fmt::format("{}: it lists no file; write the file again", source));
   std::vector<TimeStep> steps;
   for (const nlohmann::json& entry : *files) {
     const auto fail = [&](const char* what) {
-      return scene::bad_input(fmt::format("{}: entry {} of \"files\" {}; write it again", source, steps.size(), what));
+      return scene::bad_input(
+          fmt::format("{}: entry {} of \"files\" {}; write the file again", source, steps.size(), what));
     };
     const auto name = entry.is_object() ? entry.find("name") : entry.end();
     if (!entry.is_object() || name == entry.end() || !name->is_string() || name->get<std::string>().empty())

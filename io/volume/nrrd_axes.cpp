@@ -144,7 +144,7 @@ NrrdSpace space_of(const std::string& field) {
   if (word == "scannerxyz" || word == "3drighthanded") return {};
   if (word == "3dlefthanded")
     return {.to_world = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1),
-            .note = "its space is left-handed: x is reversed, so that the image is not mirrored"};
+            .note = "its space is left-handed and is converted: x is reversed, so that the image is not mirrored"};
   const auto matrix = to_ras(word);
   if (!matrix)
     return {.note = fmt::format("its space {} is unknown: the axes are used as stored in the file", quote(field))};

@@ -75,8 +75,9 @@ std::vector<std::byte> bytes_of_hex(std::string_view text, std::uint64_t count, 
     if (at == std::string_view::npos) throw too_few(source, n / 2, count, "bytes");
     const int digit = hex_digit(text[at++]);
     if (digit < 0)
-      throw scene::bad_input(fmt::format("{}: its samples contain {}, which is not a hexadecimal digit; write it again",
-                                         source, quote(text.substr(at - 1, 10))));
+      throw scene::bad_input(
+          fmt::format("{}: its samples contain {}, which is not a hexadecimal digit; write the file again", source,
+                      quote(text.substr(at - 1, 10))));
     std::byte& byte = out[static_cast<std::size_t>(n / 2)];
     byte = static_cast<std::byte>((std::to_integer<int>(byte) << 4) | digit);
   }

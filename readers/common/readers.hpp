@@ -100,7 +100,7 @@ void allow_filling(std::size_t facets, double tets, bool is_chosen);
 /// file's counts may be wrong; otherwise the machine is too small.
 scene::Error memory_error(const std::string& source,
                           std::string_view damage =
-                              "it requires more memory than a file of its size can need, so its counts may be wrong: "
+                              "it requires more memory than a file of its size can need, so its counts may be wrong; "
                               "have it written again, or in another format");
 
 }  // namespace tessera::readers

@@ -201,7 +201,7 @@ class Blocks {
     const std::size_t place = nodes_.places.find(tag);
     if (place == TagIndex::none)
       throw scene::bad_input(
-          fmt::format("{}: a cell uses node {}, which the file does not have; write it again", source_, tag));
+          fmt::format("{}: a cell uses node {}, which the file does not have; write the file again", source_, tag));
     return place;
   }
 

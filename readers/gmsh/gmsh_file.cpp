@@ -115,7 +115,7 @@ io::ForeignContents contents_of_model(Holdings& holdings, const std::string& sou
 io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string(), beginning = io::read_beginning(file, 16);
   if (!beginning.starts_with("$MeshFormat") && !beginning.starts_with("$NOD") && !beginning.starts_with("$Comments"))
-    throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it again", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write the file again", source));
   require_last_section(file);
   // Gmsh gets a name without an extension, because it would trust the extension of another format.
   system::Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));

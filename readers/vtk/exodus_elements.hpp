@@ -30,9 +30,9 @@ ExodusElement exodus_element(const std::string& topology, std::int64_t nodes);
 /// manual. Empty for other topologies, and for sides that do not exist.
 std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int64_t side);
 
-/// Corrects the order of middle nodes. `block` has points, and its tetrahedra of 15 nodes and wedges of 21 nodes are in
-/// the order of the manual. If all cells of one of these kinds fit better in the order of the library's side sets or of
-/// Ioss, their nodes are reordered to that order.
+/// Corrects the order of middle nodes. `block` must have points; its tetrahedra of 15 nodes and wedges of 21 nodes are
+/// read as if they had the order of the manual. Some programs write the order of the library's side sets or of Ioss. If
+/// one of these orders fits all cells of a kind better, the nodes of these cells are moved from it to the manual's.
 void settle_exodus_middles(cells::CellBlock& block);
 
 }  // namespace tessera::readers

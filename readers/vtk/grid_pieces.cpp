@@ -123,7 +123,7 @@ vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const
                                        file.string(), words_of(kind).extension));
   std::string warning;
   vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(read_xml_file(piece, words_of(kind).piece, warning));
-  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", piece.string()));
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write the file again", piece.string()));
   const std::string note = "VTK warns: " + warning;
   if (!warning.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   return data;

@@ -138,8 +138,8 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     grid.GetScalarAttribute("BranchFactor", forest.branching);
     if (forest.branching != 2 && forest.branching != 3)
       throw scene::bad_input(
-          fmt::format("{}: its cells are divided by {}, but those of a HyperTreeGrid by 2 or 3; write it again", source,
-                      forest.branching));
+          fmt::format("{}: its cells are divided by {}, but those of a HyperTreeGrid by 2 or 3; write the file again",
+                      source, forest.branching));
     int transposed = 0;
     grid.GetScalarAttribute("TransposedRootIndexing", transposed);
     forest.z_first = transposed != 0;

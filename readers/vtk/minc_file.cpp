@@ -111,7 +111,7 @@ class MincReader : public vtkMINCImageReader {
     if (range[0] == range[1]) {
       nc_close(id);
       throw scene::bad_input(
-          fmt::format("{}: its valid_range is {} to {}; write it again", GetFileName(), range[0], range[1]));
+          fmt::format("{}: its valid_range is {} to {}; write the file again", GetFileName(), range[0], range[1]));
     }
     ValidRange[0] = std::min(range[0], range[1]), ValidRange[1] = std::max(range[0], range[1]);
   }

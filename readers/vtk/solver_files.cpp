@@ -73,7 +73,7 @@ io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::files
   });
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
-  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", source));
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write the file again", source));
   if (correct) correct(*data);
   contents.parts = parts_of(holdings, *data, source);
   if (contents.parts.empty() && request.value("parts", 1) == 1)

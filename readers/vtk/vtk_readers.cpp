@@ -190,7 +190,7 @@ vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::st
 
 io::ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const std::string& source,
                                      const std::string& warning) {
-  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", source));
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write the file again", source));
   io::ForeignContents contents;
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   contents.parts = parts_of(holdings, *data, source);

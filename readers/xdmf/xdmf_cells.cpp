@@ -127,7 +127,7 @@ XdmfCells cells_of(XdmfTopology& topology, const std::string& where) {
   const XdmfCell& cell = cell_of(topology.getType()->getID(), topology.getType()->getName(), where);
   const std::int64_t nodes = topology.getType()->getNodesPerElement();
   if (nodes <= 0 || (cell.nodes > 0 && nodes != cell.nodes))
-    throw scene::bad_input(fmt::format("{}: its cells have {} nodes each; write it again", where, nodes));
+    throw scene::bad_input(fmt::format("{}: its cells have {} nodes each; write the file again", where, nodes));
   while (!numbers.at_end()) numbers.add_cell(cell.type, nodes, cells);
   return cells;
 }

@@ -50,7 +50,8 @@ std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& w
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double n = numbers[2 - axis];
     if (!(n >= 1 && n <= 2147483647.0))
-      throw scene::bad_input(fmt::format("{}: it has {} points along an axis; write it again", where, n));
+      throw scene::bad_input(fmt::format(
+          "{}: an axis has {} points, not a whole number from 1 to 2147483647; write the file again", where, n));
     sizes[axis] = static_cast<std::int64_t>(n);
   }
   return sizes;
@@ -99,7 +100,7 @@ class PartOf {
     } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(grid)) {
       if (!headers_only_) set(*unstructured);
     } else {
-      throw scene::bad_input(fmt::format("{}: it is a grid of an unknown kind; write it again", where_));
+      throw scene::bad_input(fmt::format("{}: it is a grid of an unknown kind; write the file again", where_));
     }
     for (const auto& each : block.grids)
       if (!headers_only_) add_attributes(*each);
@@ -117,7 +118,7 @@ class PartOf {
     const std::vector<double> origin = doubles_of(*grid.getOrigin()), steps = doubles_of(*grid.getBrickSize());
     if (origin.size() != 3 || steps.size() != 3)
       throw scene::bad_input(
-          fmt::format("{}: its origin or spacing does not have three numbers; write it again", where_));
+          fmt::format("{}: its origin or spacing does not have three numbers; write the file again", where_));
     for (std::size_t axis = 0; axis < 3; ++axis)
       part.origin[axis] = origin[2 - axis], part.spacing[axis] = steps[2 - axis];
     part.direction = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -172,7 +173,7 @@ class PartOf {
       const std::uint64_t count = count_of(is_node), values = attribute.getSize();
       if (count == 0 || values == 0) continue;
       if (values % count != 0 || values / count > 1024)
-        throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}; write it again", where_, name,
+        throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}; write the file again", where_, name,
                                            values, count, is_node ? "points" : "cells"));
       (is_node ? part.point_fields : part.cell_fields)
           .push_back(hold_xdmf(holdings_, attribute, name, static_cast<int>(values / count), is_shared(attribute)));
@@ -224,7 +225,7 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
       !is_plain               ? reader->parse(rewritten_xdmf(file))
       : io::is_inflated(file) ? reader->parse(io::read_beginning(file, io::require_file(file)))
                               : reader->read(source));
-  if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it again", source));
+  if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write the file again", source));
   std::optional<std::size_t> time_step;
   const bool headers_only = request.value("look", false);
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();

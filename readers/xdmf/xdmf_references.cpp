@@ -103,7 +103,7 @@ std::vector<XdmfArray*> referenced_arrays(XdmfArray& array, const std::string& s
                            });
     if (!are_three)
       throw scene::bad_input(fmt::format(
-          "{}: its points are given as X_Y_Z, but not by three arrays of equal length; write it again", source));
+          "{}: its points are given as X_Y_Z, but not by three arrays of equal length; write the file again", source));
     return axes;
   }
   throw scene::bad_input(

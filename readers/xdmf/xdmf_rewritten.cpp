@@ -195,7 +195,8 @@ std::string rewritten_xdmf(const std::filesystem::path& file) {
       xmlReadMemory(text.data(), static_cast<int>(text.size()), nullptr, nullptr,
                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_HUGE),
       xmlFreeDoc);
-  if (document == nullptr) throw scene::bad_input(fmt::format("{}: it is not well-formed XML; write it again", source));
+  if (document == nullptr)
+    throw scene::bad_input(fmt::format("{}: it is not well-formed XML; write the file again", source));
   Rewriting(document.get(), source).apply();
   xmlChar* dumped = nullptr;
   int size = 0;

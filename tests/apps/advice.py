@@ -115,7 +115,7 @@ R --threshold 7,8 => nothing is left to render => R --threshold 0,1
 R --threshold 1 => is not two numbers; write MIN,MAX => R --threshold 0,1
 R --clip 1,2,3 => is not PX,PY,PZ,NX,NY,NZ => R --clip 0,0,0,1,2,3
 R --clip 9,0,0,1,0,0 => nothing is on the side that --clip keeps => R --clip 0,0,0,1,0,0
-R --clip 0,0,0,0,0,0 => give a normal that points to the side to keep => R --clip 0,0,0,0,0,1
+R --clip 0,0,0,0,0,0 => give the side to keep => R --clip 0,0,0,0,0,1
 R --clip box:0,0,0,0,1,1 => give two opposite corners => R --clip box:0,0,0,1,1,1
 R --threshold 0,0.5 --clip 0.4,0.4,0.4,1,1,1 => move the plane => R --threshold 0,1 --clip 0.4,0.4,0.4,1,1,1
 R --clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0 => reverse the normal or move the plane => R --clip 5,0,0,-1,0,0
@@ -179,7 +179,7 @@ R --surface c.vtk => is not a surface of triangles; give a .ply, .stl, .vtp => R
 R --surface boundary:reddish => is not a colour; write R,G,B => R --surface boundary:red
 R --surface boundary:red:2 => opacity 2 => R --surface boundary:red:0.5
 R --surface boundary --rasterizer scanline => use --rasterizer planes => R --surface boundary --rasterizer planes
-R --surface empty.ply => is empty; write it again => R --surface a.ply
+R --surface empty.ply => is empty; write the file again => R --surface a.ply
 R --iso high => is not a number => R --iso 0.5
 R --iso 0.5:red:0 => above 0 and at most 1 => R --iso 0.5:red:1
 R --iso 0.5:red:0.5:1 => is not a number => R --iso 0.5:red:0.5
@@ -213,7 +213,7 @@ mv a0.raw b.raw; I a.nhdr => put the file there => mv b.raw a0.raw; I a.nhdr
 
 # inputs
 I scans => name a file in it => I scan
-I empty.vtu => write it again => I t.vtu
+I empty.vtu => again => I t.vtu
 I t.vtu.txt => lists them => tessera formats
 I /dev/null => give one that can be read twice => I v.vti
 : | tessera render - -o a.png => it is empty; send a file to it => tessera render - -o a.png --size 9x9 < a.ply
@@ -221,7 +221,7 @@ I m.case => it names m.geo, but there is no such file; put it there => cp ensigh
 rm case/constant/polyMesh/faces; I case => but there is no such file; put it there => I cavity
 I alone.foam => move it into the directory of a case, or name that directory => mv alone.foam cavity; I cavity/alone.foam
 mkdir one; cp scan/slice000.dcm one; I one => give a directory of slices => I scan
-cp scan/slice000.dcm a.dcm; printf '' > scan/none.dcm; I scan/none.dcm => write it again => I scan
+cp scan/slice000.dcm a.dcm; printf '' > scan/none.dcm; I scan/none.dcm => again => I scan
 mv m_0000.vtu b.vtu; I m.pvtu => there is no such file => mv b.vtu m_0000.vtu; I m.pvtu
 tessera render t%d.vtu -o a%d.png => choose steps that have it with --time-step FIRST:LAST
     => tessera render t%d.vtu -o a.png --size 9x9 --time-step 0:0
@@ -263,7 +263,7 @@ PATH=/nowhere $program render m.vtu -o a.mp4 => write a_%04d.png => tessera rend
 tessera convert m.vtu a.xyz => choose .vtu or .tets => tessera convert m.vtu a.tets
 tessera convert m.vtu a.stl => choose .vtu or .tets => tessera convert m.vtu a.tets
 tessera convert m.vtu a.pvtu => is what convert --pieces writes => tessera convert m.vtu a.pvtu --pieces 2
-printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => (NumPy array) is not read; write it as .raw => I v.raw $raw
+printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => write it as .raw by tofile, or .nrrd by pynrrd => I v.raw $raw
 tessera convert v.vti a.png => choose .vti, .vtr, .nrrd => tessera convert v.vti a.nrrd
 tessera convert m.vtu m.vtu => choose another name => tessera convert m.vtu b.vtu
 tessera convert c.vtk b.tets => write .vtu, or smooth it => tessera convert c.vtk b.tets --smooth
@@ -396,7 +396,7 @@ view_up 0 1 0\n => view_up 0 1 0\nview_up 0 1 0\n => is given twice; keep one
 0 0 9 => 0 9 => numbers; it takes 3
 parallel_scale 2 => parallel_scale 2\nview_angle 9 => keep the first for an orthographic view
 parallel_scale 2\n => => give the first for an orthographic view
-position 0 0 9\n => => give the eye's place, three numbers"""),
+position 0 0 9\n => => give the position of the eye, three numbers"""),
     ("R --camera", "d.json", VIEW, r"""
 9 => "9" => give numbers only"""),
     ("R --camera", "c.pvcc", PVCC, r"""
@@ -410,8 +410,8 @@ index="2" => index="3" => it must be 0, 1 or 2
 0.5 => -1 => it must not be negative
 0 1 0 0 0.5\n1 0 0 1 2\n => # nothing\n => give at least one line `value r g b extinction`"""),
     ("R --transfer-function", "f.json", COLORS, r"""
-1, 1, 0, 0] => 1, 1, 0] => the list is cut or a number is missing
-1, 1, 0, 0] => 1, 255, 0, 0] => components are 0 to 1, not bytes
+1, 1, 0, 0] => 1, 1, 0] => the list is cut off or lacks a number
+1, 1, 0, 0] => 1, 255, 0, 0] => write components from 0 to 1, not bytes
 [0, 0, 0.5, 0 => [0, 9, 0.5, 0 => it must be 0 to 1
 Distance": 1 => Distance": 0 => it is a length in world units
 RGBPoints => IndexedColors => give a continuous map with RGBPoints
@@ -419,7 +419,7 @@ RGBPoints => IndexedColors => give a continuous map with RGBPoints
 }] => ] => not valid JSON"""),
     ("tessera timing", "t.json", TRACE, r"""
 "ts": 0 => "ts": 1e99 => correct it or trace the run again
-"width": 9 => "width": 0.5 => it must be a whole number from 0 to"""),
+"width": 9 => "width": 0.5 => correct it"""),
     ("film", "s.series", SERIES, r"""
 files => file => check that it is a ParaView file series
 "name": "m.vtu", "time": 0 => "name": "v.vti", "time": 0 => give volumes only
@@ -430,16 +430,16 @@ files => file => check that it is a ParaView file series
 uint8 => block => write integers, float or double
 encoding: ascii => encoding: bzip2 => write raw, gzip, ascii or hex
 encoding => byte skip: -1\nencoding => state where they begin
-dimension: 3\nsizes: => dimension: 4\nkinds: vector domain domain domain\nsizes: 65 => write at most 64 components
-dimension: 3\nsizes: => dimension: 5\nkinds: list domain domain domain time\nsizes: 2 2 => write one of them alone
-dimension: 3\nsizes: => dimension: 5\nkinds: vector domain domain domain vector\nsizes: 2 2 => write one of them alone
+dimension: 3\nsizes: => dimension: 4\nkinds: vector domain domain domain\nsizes: 65 => write at most 64
+dimension: 3\nsizes: => dimension: 5\nkinds: list domain domain domain time\nsizes: 2 2 => write only one such axis
+dimension: 3\nsizes: => dimension: 5\nkinds: vector domain domain domain vector\nsizes: 2 2 => write only one such axis
 dimension: 3\nsizes: => dimension: 5\nkinds: time domain domain domain vector\nsizes: 2 2
     => or write one step alone"""),
     ("I", "a.nhdr", DETACHED, r"""
 0 1 1 => 0 2 1 => list all its slices
 data file => line skip: 1\ndata file => is for one file of samples; leave it out"""),
     ("I", "a.mha", META, r"""
-ElementType => CompressedData = True\nElementType => write them binary
+ElementType => CompressedData = True\nElementType => write them as binary numbers
 MET_UCHAR => MET_NONE => write MET_UCHAR, MET_SHORT
 NDims = 3 => NDims = 2 => a volume has three, or four with time"""),
     ("I", "a.vtu", VTU, r"""
@@ -453,22 +453,22 @@ VTKFile type => File type => check that it is one
     ("I", "a.vtk", LEGACY, r"""
 # vtk DataFile Version 3.0 => vtk => check that it is a legacy VTK file
 SCALARS => SCALRS => correct it, or have the file written again
-CELL_DATA 1 => CELL_DATA 5 => or have it written in another format"""),
+CELL_DATA 1 => CELL_DATA 5 => have the file written in another format"""),
     ("I", "b.ply", PLY, r"""
 element face 4 => element face 3 => close its holes
-0 0 1\n => 1 1 0\n => it encloses nothing; give a closed one
+0 0 1\n => 1 1 0\n => give a closed surface
 1 0 0\n => 1 0 nan\n => of the surface is not finite; correct it"""),
     ("I", "a.su2", SU2, r"""
 10 0 => 10 7 => points count from 0, correct it
-10 0 => 110 0 => which is not read; have SU2 write .vtu
+10 0 => 110 0 => have SU2 write .vtu
 NDIME= 3 => NDIME= 2 => give one of 3 dimensions"""),
     ("I", "a.mesh", MEDIT, r"""
-MeshVersionFormatted => Mesh => it does not begin as a Medit mesh does; check what it is
-Dimension 3 => Dimension 2 => and a volume has three; give one
+MeshVersionFormatted => Mesh => check what it is
+Dimension 3 => Dimension 2 => give a volume
 Tetrahedra => Triangles => give a mesh of tetrahedra, hexahedra, prisms or pyramids
-1 2 3 4 0 => 1 2 3 5 0 => a cell uses point 5 of 4; the file is damaged, export it again"""),
+1 2 3 4 0 => 1 2 3 5 0 => the file is damaged, export it again"""),
     ("I", "a.tec", TECPLOT, r"""
-1 2 3 4\n => 1 2 3 4\nVARIABLES="X" "Y"\n => write what has other variables to another file
+1 2 3 4\n => 1 2 3 4\nVARIABLES="X" "Y"\n => write zones with other variables to another file
 1 2 3 4\n => 1 2 3.5 4\n => 3.5 is among the nodes of elements; export the file again
 0 1 0 3 => 0 one 0 3 => 'one' is among the values, and is not a number; export the file again
 N=4 => N 4 => is not a key of a zone with a value; export the file again
@@ -480,28 +480,28 @@ VARIABLES= => FILETYPE=SOLUTION\nVARIABLES= => it holds a solution without its g
 "Z" "f" => => give a file with all three
 E=1 => E=1, VARLOCATION=([4]=CELLCENTERED) => values at cells cannot be packed by point; write DATAPACKING=BLOCK"""),
     ("I", "b.tec", TWO_ZONES, r"""
-"b", N=4 => "b", VARSHARELIST=([1]=1), N=3 => and needs 3; export the file again
+"b", N=4 => "b", VARSHARELIST=([1]=1), N=3 => export the file again
 "b", N=4, E=1 => "b", N=4, E=0, CONNECTIVITYSHAREZONE=1 => with which it shares them; export the file again"""),
     ("I", "a.bdf", NASTRAN, r"""
 CTETRA,9,1,1,2,3,4 => => give a deck with a volume
 1,2,3,4 => 1,2,3,5 => element 9 uses GRID 5, which the file does not have; add it, or add the file that contains it
 GRID,1 => \0GRID,1 => it is not text; give a Nastran bulk data file
-CORD2R => CORD3G => have the points written in the basic system
+CORD2R => CORD3G => write the points in the basic system
 CTETRA => =(99999999),*1,==\nCTETRA => it replicates more than 10000000 entries; write them out
 BEGIN BULK => INCLUDE 'b.bdf' => it includes 'b.bdf', and there is no such file; put it there"""),
     ("I", "b.xyz", PLOT3D, r"""
 2 2 2\n0 => 2 2 3\n0 => is truncated or of another kind (give a solution file with --q)
 0 1 0 => 0 1d0 0 => write it with E
 0 1 0 => 2*0 1 0 => write each
-0 1 0 => 0 one 0 => PLOT3D in text is numbers alone"""),
+0 1 0 => 0 one 0 => a PLOT3D text file contains only numbers"""),
     ("I a.xyz --q", "a.q", SOLUTION, r"""
-2 2 2 => 2 2 3 => give the solution of this grid
+2 2 2 => 2 2 3 => give the solution for this grid
 1 2 3 4 5 6 7 8\n => => it is truncated or of another kind (function, OVERFLOW)"""),
     ("I", "a.p3d", '{"filenames": [{"xyz": "a.xyz"}]}', r"""
 [{"xyz": "a.xyz"}] => {"xyz": "a.xyz"} => check that it is ParaView's"""),
     ("I", "a.xdmf", XDMF, r"""
 <Xdmf => <!DOCTYPE Xdmf [<!ENTITY a "b">]>\n<Xdmf => it defines its own XML entities, which is not supported; write it without them
-<Grid => <xi:include href="b.xdmf" xmlns:xi="http://www.w3.org/2001/XInclude"/><Grid => have it written as one
+<Grid => <xi:include href="b.xdmf" xmlns:xi="http://www.w3.org/2001/XInclude"/><Grid => write both as one file
 Name="f" => Name="f" Reference="XML" => write the element itself there, or save the file as .vtu
 Format="XML" NumberType="Float" Precision="8" => Format="Binary" NumberType="Float" Precision="2"
     => write floats of 4 or 8 bytes

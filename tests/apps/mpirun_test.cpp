@@ -79,7 +79,7 @@ TEST_F(Mpirun, DuplicateCellsAreCountedAndDroppedAsInOneProcess) {
     const Outcome kept = run(arguments(list, {}));
     ASSERT_EQ(kept.status, 0) << kept.err;
     EXPECT_NE(kept.err.find(": 384 cells have the corners of other cells"), std::string::npos) << kept.err;
-    EXPECT_NE(kept.err.find("--drop-duplicates draws each once"), std::string::npos) << kept.err;
+    EXPECT_NE(kept.err.find("--drop-duplicates draws each cell once"), std::string::npos) << kept.err;
     EXPECT_NE(contents(folder / "a.pfm"), picture_of_one);
     const Outcome dropped = run(arguments(list, {"--drop-duplicates"}));
     ASSERT_EQ(dropped.status, 0) << dropped.err;

@@ -143,7 +143,7 @@ TEST(Scale, IsChosenForDegreesWithMetresAndNoted) {
   const Outcome alone = render(false);
   EXPECT_EQ(alone.status, 0);
   EXPECT_EQ(alone.err.find("warning"), std::string::npos) << alone.err;
-  EXPECT_NE(alone.err.find("--scale 1,1,1 keeps it as it is"), std::string::npos) << alone.err;
+  EXPECT_NE(alone.err.find("--scale 1,1,1 leaves z unchanged"), std::string::npos) << alone.err;
   if (!has_mpirun()) return;
   const std::string of_one = contents(folder / "a.exr");
   EXPECT_EQ(render(true).status, 0);

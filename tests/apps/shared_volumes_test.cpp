@@ -174,7 +174,7 @@ TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithAWorkingRemedy) {
       EXPECT_EQ(outcome.status, 2) << outcome.err;
       EXPECT_EQ(count_of(outcome.err, "tessera: "), 1u) << outcome.err;
       for (const std::string& part : {volume, folder, std::string("27 MB"), std::string("set TMPDIR"),
-                                      std::string("convert the volume to .bricks once and render that")})
+                                      std::string("convert it to .bricks once and render that")})
         EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
       EXPECT_TRUE(nothing_left());
     }

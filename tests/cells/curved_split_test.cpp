@@ -493,8 +493,9 @@ TEST(CurvedSplit, RefusesMeshesThatNeedUnboundedTets) {
   EXPECT_EQ(tets_of(1, alone), alone);
   EXPECT_EQ(tets_of(2, 2 * alone), 2 * alone);
   const auto expect_refusal = [&](std::size_t blocks, std::uint64_t all) {
-    test::expect_bad_input([&] { tets_of(blocks, all); },
-                           {"mesh: its higher-order cells up to ", " take more than ", "`higher_order_tets`"});
+    test::expect_bad_input(
+        [&] { tets_of(blocks, all); },
+        {"mesh: its higher-order cells up to ", " cannot be approximated closely enough by ", "`higher_order_tets`"});
   };
   expect_refusal(1, alone - 64 * block.types.size() - 1);
   expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each alone is below the limit

@@ -232,7 +232,7 @@ TEST(FieldChoice, APrefixChoosesBetweenPointAndCell) {
 TEST(FieldChoice, AWrongNameListsAllNames) {
   const std::string message = message_of([] { choose("Temperature", flow); });
   EXPECT_EQ(message,
-            "mesh.vtu: no field 'Temperature'; it has point:'Density', point:'Momentum' (3 components), "
+            "mesh.vtu: there is no field 'Temperature'; it has point:'Density', point:'Momentum' (3 components), "
             "point:'StagnationEnergy', cell:'ObjectId', cell:'stress: max'");
 }
 

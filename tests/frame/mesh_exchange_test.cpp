@@ -220,13 +220,13 @@ TEST(MeshExchange, AFaultOfOneRankReachesAll) {
   const scene::TetMesh mesh = datasets::cube(4);
   try {
     exchange::run_ranks(3, [&](Transport& transport) {
-      if (transport.rank() == 1) throw scene::bad_input("piece_1.vtu: it is truncated; write it again");
+      if (transport.rank() == 1) throw scene::bad_input("piece_1.vtu: it is truncated; write the file again");
       MeshPart part = part_of(mesh, Start::slices, transport.rank(), 3, 1);
       agree_facts(transport, part.mesh);
     });
     FAIL() << "no error";
   } catch (const scene::Error& error) {
-    EXPECT_STREQ(error.what(), "piece_1.vtu: it is truncated; write it again");
+    EXPECT_STREQ(error.what(), "piece_1.vtu: it is truncated; write the file again");
   }
 }
 

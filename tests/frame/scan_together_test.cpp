@@ -34,7 +34,7 @@ class NoiseSource final : public scene::SampleSource {
   }
   void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout, std::byte* to) const override {
     if (box.high[2] > broken_)
-      throw scene::Error(scene::ErrorCode::system_failure, "noise: it cannot be read; write it again");
+      throw scene::Error(scene::ErrorCode::system_failure, "noise: it cannot be read; write the file again");
     samples_read_ += box.count();
     whole_->read(box, layout, {to, static_cast<std::size_t>(box.count()) * scene::size_of(layout.type)});
   }
@@ -84,7 +84,7 @@ TEST(ScanTogether, AReadErrorOfOneRankEndsTheRunForAllWithItsMessage) {
     FAIL() << "no error";
   } catch (const scene::Error& error) {
     EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
-    EXPECT_EQ(std::string(error.what()), "noise: it cannot be read; write it again");
+    EXPECT_EQ(std::string(error.what()), "noise: it cannot be read; write the file again");
   }
 }
 

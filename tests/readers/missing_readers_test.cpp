@@ -130,7 +130,7 @@ TEST_F(MissingReaders, RareContentOfOwnFormatsNamesTheOtherReader) {
   const test::Fault fault = test::fault_of([&] { open_volume(file); });
   EXPECT_EQ(fault.message,
             file.string() +
-                ": this VTK XML image data file has parts that are read by tessera-read-vtk alone, which is not "
+                ": this VTK XML image data file has parts that are read only by tessera-read-vtk, which is not "
                 "installed; install it (scripts/readers.sh of the sources builds it), or convert the file to .nrrd");
 }
 

@@ -26,8 +26,8 @@ Parts split(const std::string& line) {
 }
 
 TEST(Error, SplitsALineIntoItsParts) {
-  EXPECT_EQ(split("mesh.vtu: cell 3 has no volume; write it again"),
-            (Parts{"mesh.vtu", "cell 3 has no volume", "write it again"}));
+  EXPECT_EQ(split("mesh.vtu: cell 3 has no volume; write the file again"),
+            (Parts{"mesh.vtu", "cell 3 has no volume", "write the file again"}));
   EXPECT_EQ(split("rank 3 of 8: tile 17: 12 bytes; please report"),
             (Parts{"rank 3 of 8", "tile 17: 12 bytes", "please report"}));
   EXPECT_EQ(split("`deep_accuracy` 0.5: it must be 1e-6 to 1"),
@@ -102,12 +102,12 @@ TEST(Error, CopiesKeepTheParts) {
 }
 
 TEST(Error, KeepsKnownSubjectsWhole) {
-  const Error error = bad_input("odd: name; 1.vtu: line 3: is cut short; write it again");
+  const Error error = bad_input("odd: name; 1.vtu: line 3: is cut short; write the file again");
   EXPECT_EQ(error.subject(), "odd");
   const Error known = with_subject(error, "odd: name; 1.vtu");
   EXPECT_STREQ(known.what(), error.what());
   EXPECT_EQ(known.code(), error.code());
-  EXPECT_EQ(parts(known), (Parts{"odd: name; 1.vtu", "line 3: is cut short", "write it again"}));
+  EXPECT_EQ(parts(known), (Parts{"odd: name; 1.vtu", "line 3: is cut short", "write the file again"}));
   EXPECT_EQ(parts(with_subject(bad_input("a; b: is empty"), "a; b")), (Parts{"a; b", "is empty", ""}));
   // An error with another subject is unchanged.
   for (const char* other : {"", "od", "name", "odd: name", "another.vtu"})

@@ -291,7 +291,7 @@ class PacketCast {
   static HWY_INLINE VF spread_of(const Line& line, VF length) {
     return length * line.rho * MulAdd(Abs(line.span), Set(DF(), 0.25f), line.rho);
   }
-  /// Upper bound of the deviation's effect on how the front of the slab attenuates the back, relative to the tolerance.
+  /// The front of a slab attenuates its back. Returns a bound of the deviation's effect on this, in tolerances.
   HWY_INLINE VF dimming_of(const Line& line, VF length) const {
     return length * Set(DF(), current_.uniform().dimming_bound / 9) * (length * line.rho);
   }

@@ -126,7 +126,8 @@ void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, cells::C
     case NumberType::int32:
       return copy_numbers<std::int32_t>(file, offsets, block.offsets, where);
     default:
-      throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
+      throw scene::bad_input(
+          fmt::format("{}: its cells have an unsupported integer size; write the file again", where));
   }
 }
 
@@ -134,7 +135,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
                             const std::string& where) {
   if (!part.connectivity) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
+    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write the file again", where));
   if (!part.types && part.connectivity->components == 4) {
     copy_numbers<scene::Tet>(file, *part.connectivity, block.tets, where);
     return check_tets(block.tets, block.positions.size(), where);
@@ -150,7 +151,8 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
   check_cells(block, where);
   if (part.faces && part.face_locations) {
     if (part.faces->type != NumberType::uint32 || part.face_locations->type != NumberType::int64)
-      throw scene::bad_input(fmt::format("{}: its faces have an unsupported integer size; write it again", where));
+      throw scene::bad_input(
+          fmt::format("{}: its faces have an unsupported integer size; write the file again", where));
     copy_numbers<std::uint32_t>(file, *part.faces, block.faces, where);
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
@@ -244,7 +246,7 @@ void add_polygons(const ForeignFile& file, const ForeignPart& part, cells::CellB
   if (part.points) copy_points(file, *part.points, block, where);
   if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write it again", where));
+    throw scene::bad_input(fmt::format("{}: its cells have an unsupported integer size; write the file again", where));
   block.types.assign(part.offsets->tuples - 1, vtk_number(CellType::polygon));
   copy_offsets(file, *part.offsets, block, where);
   copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
@@ -317,8 +319,8 @@ void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, Associ
   const bool point = association == Association::point;
   for (const ForeignArray& array : point ? part.point_fields : part.cell_fields) {
     if (array.tuples != expected)
-      throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}s; write it again", where, array.name,
-                                         array.tuples, expected, point ? "point" : "cell"));
+      throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}s; write the file again", where,
+                                         array.name, array.tuples, expected, point ? "point" : "cell"));
     block.fields.push_back(foreign_field(file, array, association));
   }
 }

@@ -24,7 +24,7 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
     opened.contents = contents_of(reply.at("contents").get_binary());
   } catch (const std::exception&) {
     throw scene::bad_input(
-        fmt::format("{}: its contents are inconsistent; write it again, or in another format", opened.source));
+        fmt::format("{}: its contents are inconsistent; write the file again, or in another format", opened.source));
   }
   ForeignContents& contents = opened.contents;
   if (!opened.with_surfaces && contents.parts.size() > 1)

@@ -49,8 +49,9 @@ cells::Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
     cells::Polygon polygon;
     for (auto k = static_cast<std::size_t>(offsets[c]); k < static_cast<std::size_t>(offsets[c + 1]); ++k) {
       if (corners[k] >= surface.points.size())
-        throw scene::bad_input(fmt::format("{}: face {} uses point {}, but the file has only {} points; write it again",
-                                           file.source, c, corners[k], surface.points.size()));
+        throw scene::bad_input(
+            fmt::format("{}: face {} uses point {}, but the file has only {} points; write the file again", file.source,
+                        c, corners[k], surface.points.size()));
       polygon.push_back(corners[k]);
     }
     surface.facets.push_back({{std::move(polygon)}, {}});

@@ -70,7 +70,7 @@ TEST_F(StreamedVolumes, ThatAreDamagedAreRefusedInOneLine) {
   const auto refused = [&](const std::string& name, const std::string& content) {
     const auto file = folder.write(name, content);
     SCOPED_TRACE(name + " of " + std::to_string(content.size()));
-    test::expect_bad_input([&] { open_volume(file, streaming()); }, {name + ": ", "write it again"});
+    test::expect_bad_input([&] { open_volume(file, streaming()); }, {name + ": ", "again"});
     EXPECT_TRUE(scratch.names().empty());
   };
   for (const std::size_t left : {std::size_t{400}, zipped_whole.size() / 2, zipped_whole.size() - 500})
