@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "integrals/integrate_lanes-inl.h"
-#include "projection/lattice/segment_lanes-inl.h"
 #include "projection/surface_crossings.hpp"
 #include "scene/lanes/doubles-inl.h"
 #include "scene/surface_set.hpp"
@@ -36,8 +35,14 @@ namespace HWY_NAMESPACE {
 using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a segment a lane
 using namespace scene::HWY_NAMESPACE;      // doubles, packing
 using integrals::LaneTable;
-using projection::HWY_NAMESPACE::number_of;
 constexpr std::size_t most_lanes = MaxLanes(DI());
+
+/// Returns the surface numbers of marks.
+HWY_INLINE VI number_of(VF mark) {
+  using Mark = projection::LatticeMark;
+  const DI d;
+  return ShiftRight<Mark::cosine_bits>(BitCast(d, mark) - Set(d, static_cast<std::int32_t>(Mark::first_bits)));
+}
 
 /// Colours of the transfer function, one per lane.
 struct FieldColors {

@@ -30,9 +30,6 @@ constexpr double lane_lights = 4 * 0x1p-24;  ///< shaded segments: their light a
 constexpr double lane_rays = 1e-6;           ///< rays of grids in single precision, in addition to their recorded
                                              ///< bounds
 constexpr double runs = 2e-6;                ///< Exchange::runs: light and opacity of runs are sent in single precision
-/// Matter on the wrong side of a surface of triangles, if this many steps of the lattice, of the 2^31 of a mesh of this
-/// optical depth, are between the surface and a cell's face (projection/lattice/lattice_faces.hpp).
-constexpr double lane_faces(double steps, double optical_depth) { return steps * 0x1p-31 * optical_depth; }
 /// Light of surfaces on the integer lattice, for colours up to one. The cosine of the angle to the ray has 19 bits.
 inline double lane_surfaces(const SurfaceLight& light) {
   constexpr double cosine = 0x1p-20;

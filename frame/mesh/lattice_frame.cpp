@@ -10,6 +10,7 @@
 #include "projection/lattice/lattice_rasterizer.hpp"
 #include "projection/matter_light.hpp"
 #include "scene/error_budget.hpp"
+#include "scene/surface_set.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -17,21 +18,28 @@ namespace {
 namespace budget = scene::error_budget;
 
 constexpr double most_optical_depth = 2000;
-/// The largest change of a pixel that the rounding of scalars may cause: its share of the budget, or what the other
-/// errors leave, if a ray may have this brightness and the mesh this optical depth. Not above zero: float lanes are not
-/// accurate enough.
-double most_error_of(const Settings& settings, double brightest, double optical_depth, bool perspective) {
+/// The brightest light of a frame's rays, and the largest change of a pixel per step of depth.
+struct Brightness {
+  double of_rays, of_surfaces, per_step;
+};
+/// Returns the largest change of a pixel that the rounding of scalars may cause: its share of the budget, or what the
+/// other errors leave. If it is not above zero, float lanes are not accurate enough.
+double most_error_of(const Settings& settings, const Brightness& light) {
   const scene::Integrator& integrator = settings.integrator;
+  const Surfaces& surfaces = settings.surfaces;
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic,
              shaded = settings.mesh.shading.has_value();
+  const double brightest = std::max(light.of_rays, light.of_surfaces);
   const double share = automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
   const double all = automatic ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded)
                                : budget::exact_mesh_on_lattice(brightest, shaded);
-  const double lit = settings.surfaces.empty() ? 0 : budget::lane_surfaces(settings.surfaces.light);
-  const double steps = projection::LatticeFaces::face_error(perspective);
-  const double faces = settings.surfaces.has_faces() ? brightest * budget::lane_faces(steps, optical_depth) : 0;
   const double promised = automatic ? integrator.accuracy : budget::exact_mesh;
-  return all > promised ? 0 : std::min(share, promised - (all - share) - lit - faces);
+  if (all > promised) return 0;
+  double of_surfaces = surfaces.empty() ? 0 : budget::lane_surfaces(surfaces.light);
+  // Matter may be on the wrong side of a triangle.
+  if (surfaces.has_faces())
+    of_surfaces += projection::LatticeFaces::reach * light.per_step + projection::DepthLimits::most_error;
+  return std::min(share, promised - (all - share) - of_surfaces * std::max(1.0, light.of_surfaces));
 }
 // Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
 // most D int T dt over the ray's path through the piece, times the largest contribution behind the piece. Transmittance
@@ -64,6 +72,14 @@ scene::Box with_triangles(scene::Box box, const Surfaces& surfaces) {
   return box;
 }
 
+/// Returns the range together with the values of the triangles that have the colour of their values.
+std::array<double, 2> with_values(std::array<double, 2> range, const Surfaces& surfaces) {
+  for (const TriangleSurface& surface : surfaces.triangles)
+    if (!surface.color)
+      for (const double value : surface.mesh->values) range = {std::min(range[0], value), std::max(range[1], value)};
+  return range;
+}
+
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
@@ -80,7 +96,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   const bool has_faces = settings.surfaces.has_faces();
   if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      !projection::lattice_available())
+      (has_faces && !settings.surfaces.iso.empty()) || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, with_triangles(box, settings.surfaces));
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;
@@ -93,11 +109,10 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
   const double longest = (far - near) * most_length_per_depth(space);
-  const double optical_depth = function.max_extinction() * longest;
-  if (optical_depth > most_optical_depth) return std::nullopt;
+  if (function.max_extinction() * longest > most_optical_depth) return std::nullopt;
 
   const auto knots = function.knots();
-  const auto [low, high] = scalar_range;
+  const auto [low, high] = with_values(scalar_range, settings.surfaces);
   const double first = std::clamp(knots.front().value, low, high), last = std::clamp(knots.back().value, low, high);
   lattice.scalar_origin = first + (last - first) / 2;
   const double reach =
@@ -106,10 +121,12 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   lattice.scalar_unit = Lattice::unit_for(margin * reach);
   const double length = std::min(longest, glm::length(box.high - box.low));
   const bool independent = settings.emission == scene::Emission::independent;
-  const double most_error = most_error_of(settings, scene::most_light(function, settings.emission, length),
-                                          optical_depth, space.perspective());
+  const double of_surfaces = scene::SurfaceSet(settings.surfaces, transfer_function).max_color();
+  const double per_step = depth_limits_of(space, lattice, function, settings.emission, longest).light_per_step;
+  const double most_error =
+      most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step});
   if (!(most_error > 0)) return std::nullopt;
-  const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
+  const double brightest = std::max({1.0, function.max_color() * (independent ? length : 1), of_surfaces});
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;

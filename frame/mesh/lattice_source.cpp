@@ -39,7 +39,7 @@ bool LatticeSource::start(const scene::PixelRect& rect, const projection::DepthO
   windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity_, view_.light != nullptr);
   if (context_.faces == nullptr) return true;
   context_.faces->meet(rect, marks_);
-  faces_.set(marks_, view_.lattice, view_.perspective, view_.steps);
+  faces_.set(marks_, view_.lattice, view_.steps);
   stream_.lit = view_.light != nullptr;
   faces_.append_own(stream_);
   return true;
@@ -65,6 +65,7 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
 
 /// Returns the depth before which the stream's cells have no segments.
 std::int64_t LatticeSource::final_depth() const {
+  if (from_ >= order_->entries.size()) return std::int64_t{1} << 32;  // no cells: marks of a ray are in order
   const double near_depth = context_.depth_origin + order_->nearest_from(from_);
   const double steps = (near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;
   return static_cast<std::int64_t>(std::floor(std::clamp(steps, -0x1p32, 0x1p32))) - depth_error;

@@ -4,11 +4,9 @@
 //
 // What      Marks of the segment's ray that are inside the segment divide it into parts, from mark to mark. A part's
 //           scalars at a mark at depth z are s_0 + (z - z_0) (s_1 - s_0) / (z_1 - z_0).
-// How       A mark that is as near to the segment's front as the depth of a face may be inaccurate counts as in front
-//           of the segment, which then begins at the mark; in the same way, a segment ends at a mark near its back. So
-//           no matter is on the wrong side of a surface that coincides with faces of cells.
-//           A crossing of an iso-surface that is a segment of length zero, as near to marks as that, moves to the first
-//           mark of a larger number, or to the last mark; the order of numbers then decides (scene::SurfaceSet).
+// How       If a mark is inside a segment, but not further from its front than the depth of a face may be inaccurate,
+//           the segment begins at the mark; in the same way, it ends at a mark near its back. So no matter is on the
+//           wrong side of a surface that coincides with faces of cells.
 // Accuracy  Scalars are computed in double precision. A scalar at a mark is less than the scalar of the higher end, so
 //           that a part below a step of the transfer function keeps an end below the step.
 // Bits      The parts depend only on the segment and the marks of its ray, which all processes have.
@@ -35,9 +33,7 @@ namespace HWY_NAMESPACE {
 /// Cuts a stream's segments at the marks of their rays.
 class FaceCuts {
  public:
-  /// `iso` is null if there are no iso-surfaces.
-  HWY_INLINE FaceCuts(const LatticeFaces& faces, const IsoView* iso, SegmentStream& out)
-      : faces_(faces), iso_(iso), out_(out) {}
+  HWY_INLINE FaceCuts(const LatticeFaces& faces, SegmentStream& out) : faces_(faces), out_(out) {}
 
   /// Cuts the segments from index `first` on.
   HWY_NOINLINE void cut(std::size_t first) {
@@ -48,7 +44,7 @@ class FaceCuts {
       const VI pixel = IfThenElseZero(here, LoadU(d, out_.pixel.data() + i));
       const VI mark = GatherIndex(d, faces_.begin(), pixel);
       const VI count = IfThenElseZero(here, GatherIndex(d, faces_.begin() + 1, pixel) - mark);
-      if (!AllFalse(d, near_marks(i, mark, count))) cut_lanes(i, here, mark, count);
+      if (!AllFalse(d, has_inside(i, mark, count))) cut_lanes(i, here, mark, count);
     }
   }
 
@@ -69,19 +65,18 @@ class FaceCuts {
     }
   };
 
-  /// Returns the lanes whose segment has a mark inside or within the largest reach.
-  HWY_INLINE MI near_marks(std::size_t i, VI mark, VI count) const {
+  /// Returns the lanes whose segment has a mark inside.
+  HWY_INLINE MI has_inside(std::size_t i, VI mark, VI count) const {
     const DI d;
-    const VI reach = Set(d, faces_.most_reach());
-    const VI from = LoadU(d, out_.front.data() + i) - reach, to = LoadU(d, out_.back.data() + i) + reach;
-    MI near = FirstN(d, 0), left = count > Zero(d);
+    const VI front = LoadU(d, out_.front.data() + i), back = LoadU(d, out_.back.data() + i);
+    MI has = FirstN(d, 0), left = count > Zero(d);
     for (VI k = Zero(d); !AllFalse(d, left);) {
       const VI place = GatherIndex(d, faces_.places(), IfThenElseZero(left, mark + k));
-      near = Or(near, AndNot(Or(place<from, place> to), left));
+      has = Or(has, And(left, And(place > front, place < back)));
       k = k + Set(d, 1);
-      left = And(left, And(k < count, Not(place > to)));
+      left = And(left, And(k < count, place < back));
     }
-    return near;
+    return has;
   }
 
   /// Cuts the segments [i, i + lanes) of the mask `here`. `mark` is the index of the first mark of each lane's ray,
@@ -92,53 +87,39 @@ class FaceCuts {
     const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
       out_.reserve(2 * (out_.size + most * lanes));
-    const VI pixel = LoadU(d, out_.pixel.data() + i);
+    const VI pixel = LoadU(d, out_.pixel.data() + i), reach = Set(d, LatticeFaces::reach);
+    const Line line{LoadU(d, out_.front.data() + i), LoadU(d, out_.back.data() + i),
+                    LoadU(df, out_.scalar_front.data() + i), LoadU(df, out_.scalar_back.data() + i)};
     // The part that is not cut yet.
-    VI begin = LoadU(d, out_.front.data() + i), end = LoadU(d, out_.back.data() + i);
-    VF scalar = IfThenElseZero(RebindMask(df, here), LoadU(df, out_.scalar_front.data() + i));
-    const Line line{begin, end, value_of(scalar), LoadU(df, out_.scalar_back.data() + i)};
-    const MI crossing = And(begin == end, RebindMask(d, scalar >= Set(df, LatticeMark::first)));
-    const VI number = number_of(scalar);
-    MI left = here;  // lanes whose next mark may be at their segment
+    VI begin = line.front, end = line.back;
+    VF scalar = line.from;
+    MI left = here;  // lanes that may have further marks inside
     for (std::size_t k = 0; k < most; ++k) {
       const VI kth = Set(d, static_cast<std::int32_t>(k));
       left = And(left, kth < count);
       if (AllFalse(d, left)) break;
-      const VI index = IfThenElseZero(left, mark + kth);
-      const VI place = GatherIndex(d, faces_.places(), index), reach = GatherIndex(d, faces_.reaches(), index);
-      const MI at_front = And(left, Not(Abs(place - line.front) > reach));
-      begin = IfThenElse(at_front, place, begin);
-      const MI follows = GatherIndex(d, faces_.numbers(), index) > number;
-      left = AndNot(And(And(crossing, at_front), follows), left);
-      const MI behind = AndNot(Or(at_front, crossing), left);
-      const MI at_back = And(behind, Not(Abs(place - line.back) > reach));
+      const VI place = GatherIndex(d, faces_.places(), IfThenElseZero(left, mark + kth));
+      left = And(left, place < line.back);
+      const MI inside = And(left, place > begin), at_front = And(inside, Not(place - line.front > reach));
+      const MI at_back = AndNot(at_front, And(inside, Not(line.back - place > reach)));
       end = IfThenElse(at_back, place, end);
-      left = AndNot(Or(at_back, And(behind, place > line.back)), left);
-      const MI inside = And(And(behind, left), place > begin);
-      if (AllFalse(d, inside)) continue;
-      const VF value = line.scalar_at(place);
-      if (out_.lit)
-        append_light(RebindMask(df, inside), LoadU(df, out_.own.data() + i), LoadU(df, out_.white.data() + i), out_);
-      append(RebindMask(df, inside), pixel, {begin, place, scalar, value}, out_);
-      begin = IfThenElse(inside, place, begin);
-      scalar = IfThenElse(RebindMask(df, inside), value, scalar);
+      left = AndNot(at_back, left);
+      const MI cut = AndNot(Or(at_front, at_back), inside);
+      if (!AllFalse(d, cut)) {
+        const VF value = line.scalar_at(place);
+        if (out_.lit)
+          append_light(RebindMask(df, cut), LoadU(df, out_.own.data() + i), LoadU(df, out_.white.data() + i), out_);
+        append(RebindMask(df, cut), pixel, {begin, place, scalar, value}, out_);
+        scalar = IfThenElse(RebindMask(df, cut), value, scalar);
+      }
+      begin = IfThenElse(Or(at_front, cut), place, begin);
     }
     BlendedStore(begin, here, d, out_.front.data() + i);
-    BlendedStore(IfThenElse(crossing, begin, Max(begin, end)), here, d, out_.back.data() + i);
+    BlendedStore(end, here, d, out_.back.data() + i);
     BlendedStore(scalar, RebindMask(df, here), df, out_.scalar_front.data() + i);
   }
 
-  /// Returns the front scalars, with the marks of iso-surfaces replaced by the surfaces' values.
-  HWY_INLINE VF value_of(VF scalar) const {
-    const DF d;
-    const MF is_mark = scalar >= Set(d, LatticeMark::first);
-    if (iso_ == nullptr || AllFalse(d, is_mark)) return scalar;
-    const VI number = IfThenElseZero(RebindMask(DI(), is_mark), number_of(scalar));
-    return IfThenElse(is_mark, GatherIndex(d, iso_->surfaces->on_lattice_by_number().data(), number), scalar);
-  }
-
   const LatticeFaces& faces_;
-  const IsoView* iso_;
   SegmentStream& out_;
 };
 

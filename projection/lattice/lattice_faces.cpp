@@ -2,32 +2,23 @@
 #include "projection/lattice/lattice_faces.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "projection/surface_crossings.hpp"
 
 namespace tessera::projection {
-namespace {
 
-constexpr double most_reach_of_mark = 0x1p20;
-
-}  // namespace
-
-void LatticeFaces::set(const FaceMarks& marks, const scene::Lattice& lattice, bool perspective,
-                       std::span<const Step> steps) {
+void LatticeFaces::set(const FaceMarks& marks, const scene::Lattice& lattice, std::span<const Step> steps) {
   begin_.assign(marks.begin().begin(), marks.begin().end());
-  place_.clear(), reach_.clear(), number_.clear(), own_.clear();
-  most_reach_ = 0;
+  place_.clear(), own_.clear();
+  float before = 0;
   for (const FaceMark& mark : marks.marks()) {
     const bool first = static_cast<std::int32_t>(place_.size()) == begin_[mark.pixel];
+    const float crossing = LatticeMark::of({mark.number, mark.cosine});
     const std::int32_t at = lattice.depth_step(mark.depth);
-    place_.push_back(first ? at : std::max(at, place_.back() + 1));
-    const double tolerance = std::min(std::ceil(mark.tolerance / lattice.depth_unit), most_reach_of_mark);
-    reach_.push_back(face_error(perspective) + static_cast<std::int32_t>(tolerance));
-    most_reach_ = std::max(most_reach_, reach_.back());
-    number_.push_back(static_cast<std::int32_t>(mark.number));
+    place_.push_back(first ? at : std::max(at, place_.back() + (crossing < before ? 1 : 0)));
+    before = crossing;
     if (mark.own)
-      own_.push_back({static_cast<std::int32_t>(mark.pixel), place_.back(), LatticeMark::of({mark.number, mark.cosine}),
+      own_.push_back({static_cast<std::int32_t>(mark.pixel), place_.back(), crossing,
                       lattice_scalars(mark.value, mark.value, steps, lattice).back});
   }
 }

@@ -14,32 +14,27 @@
 namespace tessera::projection {
 
 /// The points where the rays of a rectangle meet triangle surfaces, with depths in steps of the lattice. Marks of one
-/// ray have different steps, in the order of FaceMarks, so a mark is at most as many steps from its depth as the ray
-/// has marks nearby.
+/// ray at one step are sorted like segments, by their numbers; if FaceMarks has another order there, the marks that
+/// follow are moved to the next step.
 ///
 /// A mark becomes a segment of length zero (surface_crossings.hpp), and the rasterizer's segments are cut there
 /// (lattice_faces-inl.h). Segments in front of a mark end at its step and segments behind it begin there: the order of
-/// segments, by front and then by back, puts the mark between them. Marks of one step are in the order of their
-/// numbers.
+/// segments, by front and then by back, puts the mark between them.
 class LatticeFaces {
  public:
-  /// The largest error of the depth of a cell's face, in steps, with one step for the rounding of a mark: 17 for
-  /// planes; perspective divides in floats, which adds 3.2e-7 of the depth of the cell.
-  static std::int32_t face_error(bool perspective) { return perspective ? 18 + 344 : 18; }
+  /// A mark within this number of steps behind a segment's front, or before its back, is taken to be there: depths of
+  /// planes have errors of up to 16 steps, and the depths of marks of one. (Perspective divides in floats, whose larger
+  /// errors DepthLimits bounds.)
+  static constexpr std::int32_t reach = 18;
 
   /// Takes the sorted marks of a rectangle. `steps` are those of the transfer function.
-  void set(const FaceMarks& marks, const scene::Lattice& lattice, bool perspective, std::span<const Step> steps);
+  void set(const FaceMarks& marks, const scene::Lattice& lattice, std::span<const Step> steps);
 
   [[nodiscard]] bool empty() const { return place_.empty(); }
   /// The marks of pixel p have the indices [begin()[p], begin()[p + 1]).
   [[nodiscard]] const std::int32_t* begin() const { return begin_.data(); }
   /// Each mark's depth, in steps; ascending along a ray.
   [[nodiscard]] const std::int32_t* places() const { return place_.data(); }
-  /// The largest distance, in steps, of a face of a cell from a mark in the same plane.
-  [[nodiscard]] const std::int32_t* reaches() const { return reach_.data(); }
-  [[nodiscard]] std::int32_t most_reach() const { return most_reach_; }
-  /// Each mark's number (FaceMark).
-  [[nodiscard]] const std::int32_t* numbers() const { return number_.data(); }
 
   /// Appends the marks that this process owns. SegmentStream::lit must be set.
   void append_own(SegmentStream& out) const;
@@ -49,8 +44,7 @@ class LatticeFaces {
     std::int32_t pixel, place;
     float mark, scalar;
   };
-  std::vector<std::int32_t> begin_, place_, reach_, number_;
-  std::int32_t most_reach_ = 0;
+  std::vector<std::int32_t> begin_, place_;
   std::vector<Own> own_;
 };
 

@@ -88,15 +88,6 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Mask
   crossing.template finish_cells<false, true>(hits);
 }
 
-/// Cuts a batch's segments, which are those from index `first` on, at iso-surfaces.
-HWY_INLINE void cut_at_surfaces(const LatticeView& view, const CellBatch& batch, const MaskedRect& pixels,
-                                std::size_t first, LatticeSurfaces& surfaces, SegmentStream& out) {
-  const CrossedSegments segments = crossed_segments(out, first, surfaces);
-  if (segments.count == 0) return;
-  find_normals(view, batch, segments.cells, surfaces);
-  SurfaceCuts(view, surfaces, pixels, out).cut(segments);
-}
-
 /// Rasterizes an irregular cell in double precision and converts its segments to the lattice.
 HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const scene::PixelRect& rect,
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
@@ -161,8 +152,12 @@ void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRec
       per_cell ? rasterize_cells<false, true>(view, batch, pixels, cover_scratch, out, counts)
                : rasterize_cells<false, false>(view, batch, pixels, cover_scratch, out, counts);
     if (lights) lights->set(batch, first, out);
-    if (crossed != 0) cut_at_surfaces(view, batch, pixels, first, surfaces, out);
-    if (pixels.faces != nullptr) FaceCuts(*pixels.faces, view.projected.iso, out).cut(begin);
+    if (pixels.faces != nullptr) FaceCuts(*pixels.faces, out).cut(begin);
+    if (crossed == 0) continue;
+    const CrossedSegments segments = crossed_segments(out, first, surfaces);
+    if (segments.count == 0) continue;
+    find_normals(view, batch, segments.cells, surfaces);
+    SurfaceCuts(view, surfaces, pixels, out).cut(segments);
   }
 }
 #endif  // HWY_SCALAR

@@ -23,7 +23,6 @@
 #endif
 
 #include "projection/lattice/segment_windows.hpp"
-#include "projection/surface_crossings.hpp"
 #include "scene/lanes/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,13 +36,6 @@ struct SegmentLanes {
   VI front, back;
   VF scalar_front, scalar_back;
 };
-
-/// Returns the numbers of the crossings that marks contain (LatticeMark).
-HWY_INLINE VI number_of(VF mark) {
-  const DI d;
-  return ShiftRight<LatticeMark::cosine_bits>(BitCast(d, mark) -
-                                              Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
-}
 
 /// Appends the segments of those lanes that are set in `hit`. They are packed in registers and stored as whole vectors.
 HWY_INLINE void append(MF hit, VI pixel, const SegmentLanes& segments, SegmentStream& out) {

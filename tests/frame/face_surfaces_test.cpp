@@ -19,6 +19,7 @@
 #include "frame/random_clips.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
@@ -310,6 +311,96 @@ RandomCase random_face_case(Random& random) {
 }
 
 TEST(FaceSurfaces, RandomSurfacesKeepThePromise) { expect_random_cases_right(23, 150, random_face_case); }
+
+/// The error of `exact`, seen along the z axis from z = 4.
+double error_of(const scene::TetMesh& mesh, const Surfaces& surfaces, const TransferFunction& function,
+                scene::Emission emission = scene::Emission::absorption, FrameStatistics* statistics = nullptr) {
+  constexpr scene::ImageSize size{24, 24};
+  const scene::Camera camera = view(ProjectionKind::orthographic, {0.013, 0.017, 4});
+  Settings settings = exact(surfaces);
+  settings.emission = emission;
+  const scene::Image image = Renderer(mesh, settings).render(camera, size, function, statistics);
+  return reference::judge(image, reference::Reference(mesh, camera, size, function, emission, surfaces), promised_error)
+      .max_error;
+}
+TransferFunction fog(double extinction) {
+  return TransferFunction({{0, {1, 1, 1}, extinction}, {1, {1, 1, 1}, extinction}});
+}
+
+TEST(TriangleSurface, IsInOrderAmongManyWhereThereAreNoCells) {
+  Surfaces surfaces;
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 70; ++i)
+    for (const glm::dvec3& p : square(0.9, 3 - 0.08 * i)->points) points.push_back(p);
+  surfaces.triangles = {{triangles(points), glm::dvec3(1, 0.5, 0), 0.02}};
+  EXPECT_LT(error_of(datasets::cube(2), surfaces, clear()), promised_error);  // no cell is visible
+  scene::TetMesh aside = datasets::cube(2);
+  for (glm::dvec3& p : aside.positions) p = 0.1 * p + glm::dvec3(1.2, 0, 0);
+  EXPECT_LT(error_of(aside, surfaces, grey_fog()), promised_error);
+}
+
+TEST(TriangleSurface, MayHaveValuesBeyondThoseOfTheMesh) {
+  auto wall = std::make_shared<TriangleMesh>(*square(0.9, 1.5));
+  wall->values = {-3, -1, 4, 0, 2.7, 1};
+  Surfaces surfaces;
+  surfaces.triangles = {{wall, {}, 1}};
+  EXPECT_LT(error_of(datasets::cube(2), surfaces,
+                     TransferFunction({{-10, {1, 0, 0}, 1}, {0, {0, 1, 0}, 1}, {2.5, {0.5, 0.5, 1}, 1}, {9, {}, 1}})),
+            promised_error);
+}
+
+TEST(TriangleSurface, FarLargerThanTheMeshDoesNotMakeItsDepthsCoarse) {
+  // The lattice extends over the ground; a step of it is a part of the cube.
+  for (const double size : {1e2, 1e4, 1e6})
+    for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent}) {
+      Surfaces surfaces;
+      surfaces.boundary = {{glm::dvec3(0, 0, 1), 0.5}};
+      surfaces.triangles = {
+          {triangles({{-size, -1.4, -size}, {size, -1.4, -size}, {0, -1.4, size}}), glm::dvec3(0, 1, 0)}};
+      EXPECT_LT(error_of(datasets::cube(8), surfaces, fog(1e-4), emission), promised_error) << size;
+    }
+}
+
+TEST(TriangleSurface, DoesNotMultiplyThinCellsBehindIt) {
+  // Forty cells, each as thick as a step of the lattice, which extends to the second square.
+  const scene::TetMesh mesh = datasets::regular_split(2, 2, 40, {1, 1, 2e-9}, {-1, -1, 0});
+  Surfaces surfaces;
+  surfaces.triangles = {{square(0.9, 8e-8), glm::dvec3(0, 0, 1), 0.5}, {square(0.5, -2), glm::dvec3(1, 0, 0), 0.5}};
+  FrameStatistics statistics;
+  EXPECT_LT(error_of(mesh, surfaces, fog(600), scene::Emission::absorption, &statistics), promised_error);
+  EXPECT_EQ(statistics.on_lattice, projection::lattice_available());
+}
+
+TEST(TriangleSurface, OfBrightColourKeepsThePromise) {
+  Surfaces surfaces;
+  surfaces.triangles = {{square(0.9, 0.25), glm::dvec3(20, 20, 20), 1}};
+  const TransferFunction dark({{0, {0, 0, 0}, 0}, {0.5, {0, 0, 0}, 0}, {0.5, {0, 0, 0}, 100}, {1, {0, 0, 0}, 100}});
+  EXPECT_LT(error_of(datasets::cube(4), surfaces, dark), promised_error);
+}
+
+TEST(TriangleSurface, NearAnIsoSurfaceIsInTheOrderOfDepth) {
+  scene::TetMesh mesh = datasets::cube(4);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.scalars[i] = mesh.positions[i].z / 2 + 0.5;
+  for (const double z : {0.2 + 4e-9, 0.2 - 4e-9}) {
+    Surfaces surfaces;
+    surfaces.iso = {{0.6, glm::dvec3(0, 0, 1)}};
+    surfaces.triangles = {{square(0.9, z), glm::dvec3(1, 0, 0)}};
+    EXPECT_LT(error_of(mesh, surfaces, fog(1)), promised_error) << z - 0.2;
+  }
+}
+
+TEST(FaceSurfaces, AreOnTheLatticeWithoutIsoSurfaces) {
+  Surfaces surfaces;
+  surfaces.boundary = {{{}, 0.5}};
+  FrameStatistics statistics;
+  EXPECT_LT(error_of(datasets::cube(4), surfaces, grey_fog(), scene::Emission::absorption, &statistics),
+            promised_error);
+  EXPECT_EQ(statistics.on_lattice, projection::lattice_available());
+  surfaces.iso = {{0.5, {}, 0.5}};
+  EXPECT_LT(error_of(datasets::cube(4), surfaces, grey_fog(), scene::Emission::absorption, &statistics),
+            promised_error);
+  EXPECT_FALSE(statistics.on_lattice);
+}
 
 TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 40);

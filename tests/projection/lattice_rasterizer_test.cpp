@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <map>
@@ -187,19 +186,19 @@ TEST(LatticeRasterizer, CutsSegmentsAtTheTrianglesThatTheirRaysMeet) {
       const Rays whole = rasterized(scene, 32);
       const FaceMarks marks = some_marks(scene, whole);
       LatticeFaces faces;
-      faces.set(marks, scene.lattice, scene.space.perspective(), {});
+      faces.set(marks, scene.lattice, {});
       const Rays cut = rasterized(scene, 32, nullptr, 16, &faces);
       std::size_t parts = 0;
       for (std::size_t p = 0; p < cut.size(); ++p) {
         const auto first = faces.places() + faces.begin()[p], last = faces.places() + faces.begin()[p + 1];
-        EXPECT_EQ(std::adjacent_find(first, last, std::greater_equal<>()), last) << "each has a depth of its own";
+        EXPECT_TRUE(std::is_sorted(first, last));
         double length = 0, length_of_whole = 0;
         for (const Segment& s : whole[p]) length_of_whole += s.back - s.front;
         for (const Segment& s : cut[p]) {
           length += s.back - s.front;
           EXPECT_TRUE(std::none_of(first, last, [&](std::int32_t at) { return s.front < at && at < s.back; })) << p;
           // It is a part of a cell's segment, with this segment's scalars, up to the error of a face's depth.
-          const double reach = faces.most_reach() + 4;
+          const double reach = LatticeFaces::reach + 4;
           EXPECT_TRUE(std::ranges::any_of(whole[p], [&](const Segment& of) {
             const double steps = std::max(1, of.back - of.front), slope = (of.scalar_back - of.scalar_front) / steps;
             const auto is_on = [&](std::int32_t depth, double scalar) {
@@ -210,7 +209,7 @@ TEST(LatticeRasterizer, CutsSegmentsAtTheTrianglesThatTheirRaysMeet) {
                    (s.front == s.back || (is_on(s.front, s.scalar_front) && is_on(s.back, s.scalar_back)));
           })) << p;
         }
-        EXPECT_NEAR(length, length_of_whole, faces.most_reach() * (last - first) * 4.0) << p;
+        EXPECT_NEAR(length, length_of_whole, LatticeFaces::reach * (last - first) * 4.0) << p;
         parts += cut[p].size() - whole[p].size();
       }
       EXPECT_GT(parts, 200u);

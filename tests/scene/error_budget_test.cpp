@@ -46,7 +46,6 @@ TEST(ErrorBudget, LightOfSurfacesIsAsUncertainAsItsSlope) {
   EXPECT_NEAR(budget::lane_surfaces({0.2, 0.8, 0.2, 32}), 0x1p-20 * (0.8 + 0.2 * 32), 1e-12);
   EXPECT_NEAR(budget::lane_surfaces({0, 0, 1, 0.5}), 0x1p-10, 1e-12);  // the square root of a cosine near zero
   EXPECT_EQ(budget::lane_surfaces({1, 0, 1, 0}), 0);
-  EXPECT_NEAR(budget::lane_faces(18, 2000), 1.7e-5, 1e-6);
 }
 
 TEST(ErrorBudget, EmissionOnlyLightIsThatOfDenseMatterOrOfTheWholeRay) {
