@@ -367,7 +367,7 @@ TEST(TriangleSurface, DoesNotMultiplyThinCellsBehindIt) {
   Surfaces surfaces;
   surfaces.triangles = {{square(0.9, 8e-8), glm::dvec3(0, 0, 1), 0.5}, {square(0.5, -2), glm::dvec3(1, 0, 0), 0.5}};
   FrameStatistics statistics;
-  EXPECT_LT(error_of(mesh, surfaces, fog(600), scene::Emission::absorption, &statistics), promised_error);
+  EXPECT_LT(error_of(mesh, surfaces, fog(60), scene::Emission::absorption, &statistics), promised_error);
   EXPECT_EQ(statistics.on_lattice, projection::lattice_available());
 }
 
