@@ -21,7 +21,8 @@ namespace tessera::frame {
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could exceed its share of
 ///     the error (scene/error_budget.hpp);
 ///   - two steps of the function are so close together that the lattice cannot separate them;
-///   - there are both triangle surfaces and iso-surfaces, whose order where they nearly touch the lattice cannot tell;
+///   - there are both triangle surfaces and iso-surfaces, whose order the lattice cannot resolve where they nearly
+///   touch;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;
 ///   - the lattice is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.
