@@ -7,7 +7,8 @@
 For changes that must not cost performance: the frames of bench/targets.py and bench/volumes.py made of generated data, view and transfer function of all
 performance figures, 1024 x 1024, two threads. A round renders each row by both programs, the old one first in every second round; times are of single frames
 in memory (`frame_ms`), without reading and writing. A row has the ratio of the lower quartiles of all rounds' frames, new over old, the same for the processes'
-CPU time, and for their largest resident memory. Last, the size of the programs. Needs mpirun for the rows of ranks.
+CPU time, and for their largest resident memory. Last, the size of the programs. An interrupt (Ctrl-C)
+ends the measurement; the rows that have been measured are printed. Needs mpirun for the rows of ranks.
 """
 import argparse
 import json
@@ -62,14 +63,17 @@ def main():
         rows = [row for row in ROWS if args.only in row[0]]
         files = {data: generated(args, "-".join(data) + (".nrrd" if data[0] == "ripples" else ".tets"), *data) for _, data, _, _ in rows}
         measured = [{which: {"ms": [], "cpu": [], "memory": []} for which in programs} for _ in rows]
-        for number in range(args.rounds):
-            for (_, data, words, ranks), found in zip(rows, measured):
-                words = ["--size", "1024x1024"] * ("--size" not in words) + ["--threads", "2"] * ("--threads" not in words) + words
-                for which in ("old", "new") if number % 2 == 0 else ("new", "old"):
-                    report = render(args, files[data], *VIEW, "--repeat", args.repeat, *words, ranks=ranks, program=programs[which])
-                    found[which]["ms"] += report["frames"][0]["frame_ms"]
-                    found[which]["cpu"].append(report["run"].cpu)
-                    found[which]["memory"].append(report["run"].memory)
+        try:
+            for number in range(args.rounds):
+                for (_, data, words, ranks), found in zip(rows, measured):
+                    words = ["--size", "1024x1024"] * ("--size" not in words) + ["--threads", "2"] * ("--threads" not in words) + words
+                    for which in ("old", "new") if number % 2 == 0 else ("new", "old"):
+                        report = render(args, files[data], *VIEW, "--repeat", args.repeat, *words, ranks=ranks, program=programs[which])
+                        found[which]["ms"] += report["frames"][0]["frame_ms"]
+                        found[which]["cpu"].append(report["run"].cpu)
+                        found[which]["memory"].append(report["run"].memory)
+        except KeyboardInterrupt:
+            rows = [row for row, found in zip(rows, measured) if found["new"]["ms"] and found["old"]["ms"]]  # what has been measured
     print("| row | old, ms | new, ms | time | CPU | memory |\n|---|---:|---:|---:|---:|---:|")
     for (name, *_), found in zip(rows, measured):
         old, new = ({**{key: quartile(found[which][key]) for key in ("ms", "cpu")}, "memory": statistics.median(found[which]["memory"])} for which in programs)
