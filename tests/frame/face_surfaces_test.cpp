@@ -330,8 +330,10 @@ TransferFunction fog(double extinction) {
 TEST(TriangleSurface, IsInOrderAmongManyWhereThereAreNoCells) {
   Surfaces surfaces;
   std::vector<glm::dvec3> points;
-  for (int i = 0; i < 70; ++i)
-    for (const glm::dvec3& p : square(0.9, 3 - 0.08 * i)->points) points.push_back(p);
+  for (int i = 0; i < 70; ++i) {
+    const auto sheet = square(0.9, 3 - 0.08 * i);
+    points.insert(points.end(), sheet->points.begin(), sheet->points.end());
+  }
   surfaces.triangles = {{triangles(points), glm::dvec3(1, 0.5, 0), 0.02}};
   EXPECT_LT(error_of(datasets::cube(2), surfaces, clear()), promised_error);  // no cell is visible
   scene::TetMesh aside = datasets::cube(2);
