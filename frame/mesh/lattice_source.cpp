@@ -63,9 +63,18 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
   }
 }
 
+/// Returns the depth before which neither the marks that are still in the stream nor any cell have segments.
+std::int64_t LatticeSource::first_of_marks() const {
+  std::int64_t first = std::int64_t{1} << 32;
+  if (!order_->entries.empty()) first = first_of_cells();
+  for (std::size_t i = placed_; i < stream_.size; ++i) first = std::min<std::int64_t>(first, stream_.front[i]);
+  return first;
+}
+
+std::int64_t LatticeSource::final_depth() const { return cells_ == 0 ? first_of_marks() : first_of_cells(); }
+
 /// Returns the depth before which the stream's cells have no segments.
-std::int64_t LatticeSource::final_depth() const {
-  if (from_ >= order_->entries.size()) return std::int64_t{1} << 32;  // no cells: marks of a ray are in order
+std::int64_t LatticeSource::first_of_cells() const {
   const double near_depth = context_.depth_origin + order_->nearest_from(from_);
   const double steps = (near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;
   return static_cast<std::int64_t>(std::floor(std::clamp(steps, -0x1p32, 0x1p32))) - depth_error;

@@ -27,6 +27,9 @@ class LatticeSource {
   [[nodiscard]] std::uint64_t alive() const { return windows_.total(); }
 
  private:
+  [[nodiscard]] std::int64_t first_of_marks() const;
+  [[nodiscard]] std::int64_t first_of_cells() const;
+
   TileContext context_;
   TileCounts* counts_;
   projection::LatticeView view_;

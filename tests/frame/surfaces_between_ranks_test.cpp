@@ -135,6 +135,27 @@ TEST(SurfacesBetweenRanks, OfFacesMatchThoseOfOneProcess) {
   }
 }
 
+TEST(SurfacesBetweenRanks, OfMoreTrianglesThanAWindowHoldsMatchThoseOfOneProcess) {
+  // Rays meet 100 sheets, of which each rank has a share, before, in and behind the cells.
+  auto sheets = std::make_shared<TriangleMesh>();
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const double z = 2 - 0.04 * i;
+    for (const glm::dvec3& p : {glm::dvec3(-3, -3, z), glm::dvec3(3, -3, z + 0.01), glm::dvec3(0, 3, z - 0.01)})
+      sheets->points.push_back(p);
+    sheets->triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  DistributedSettings settings;
+  settings.render.integrator.kind = scene::IntegratorKind::exact;
+  settings.render.threads = 1;
+  settings.render.memory_bytes = 256ull << 20;
+  settings.render.surfaces.triangles = {{sheets, glm::dvec3(1, 0.5, 0), 0.02}};
+  FrameJob job{{}, {31, 31}, 0};
+  job.camera.position = {0.3, 0.2, 5};
+  job.camera.parallel_scale = 1.6;
+  const scene::TransferFunction function({{0, {0.2, 0.4, 0.9}, 0.2}, {1, {1, 0.4, 0.2}, 0.4}});
+  expect_those_of_one_process(datasets::cube(3, 0.2), settings, job, function);
+}
+
 /// The boundary again as triangles of a surface, every second one reversed.
 std::shared_ptr<TriangleMesh> skin_of(const scene::TetMesh& mesh) {
   auto skin = std::make_shared<TriangleMesh>(boundary_faces(mesh).mesh);
