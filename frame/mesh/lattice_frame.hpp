@@ -14,15 +14,16 @@
 
 namespace tessera::frame {
 
-/// Returns the integer lattice of a frame. It is computed only from the box and scalar range of the whole mesh, so that
-/// all processes have the same lattice. Returns nothing if the frame needs double precision:
+/// Returns the integer lattice of a frame. It is computed only from the box and scalar range of the whole mesh and from
+/// the triangle surfaces, so that all processes have the same lattice. Returns nothing if the frame needs double
+/// precision:
 ///   - the mesh's depth times the largest extinction is above 2000: 16 steps of the lattice, 1e-8 of the depth, could
 ///     be visible. With perspective, the longest ray of the image replaces the depth;
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could exceed its share of
 ///     the error (scene/error_budget.hpp);
 ///   - two steps of the function are so close together that the lattice cannot separate them;
-///   - there are both triangle surfaces and iso-surfaces, whose order the lattice cannot resolve where they nearly
-///   touch;
+///   - there are both triangle surfaces and iso-surfaces: where they nearly touch, the lattice cannot resolve their
+///     order;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;
 ///   - the lattice is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.

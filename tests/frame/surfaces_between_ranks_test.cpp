@@ -136,7 +136,7 @@ TEST(SurfacesBetweenRanks, OfFacesMatchThoseOfOneProcess) {
 }
 
 TEST(SurfacesBetweenRanks, OfMoreTrianglesThanAWindowHoldsMatchThoseOfOneProcess) {
-  // Rays meet 100 sheets, of which each rank has a share, before, in and behind the cells.
+  // Rays meet 100 sheets before, in and behind the cells. Each rank has a share of the sheets.
   auto sheets = std::make_shared<TriangleMesh>();
   for (std::uint32_t i = 0; i < 100; ++i) {
     const double z = 2 - 0.04 * i;
