@@ -64,7 +64,7 @@ if [ -n "$extent" ]; then
   presets=(sanitize release)
   if [ "$extent" = all ]; then configurations=(); else configurations=(least); fi
   stage configurations scripts/configurations.sh "${configurations[@]}"
-  stage fuzz scripts/fuzz.sh 10
+  stage fuzz scripts/fuzz.sh 20000x
 fi
 if [ "$extent" = ci ]; then stage tidy scripts/lint.sh changed; fi
 if [ "$extent" = all ]; then

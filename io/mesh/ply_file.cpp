@@ -89,7 +89,7 @@ class PlyParser {
       } else if (words[0] == "element" && words.size() == 3) {
         const auto count = number_of<std::uint64_t>(words[2]);
         if (!count || *count > scanner_.rest().size())
-          fail(fmt::format("its header states {} of element {}", scene::quote(words[2]), printable_ascii(words[1])));
+          fail(fmt::format("its header states {} of element {}", scene::quote(words[2]), scene::quote(words[1])));
         elements_.push_back({std::string(words[1]), *count, {}});
       } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
         Property property;
@@ -97,7 +97,7 @@ class PlyParser {
         if (is_list) property.count = scene::number_type_named(words[2], ply_types);
         const auto type = scene::number_type_named(words[is_list ? 3 : 1], ply_types);
         if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= NumberType::float32)))
-          fail(fmt::format("a property of {} has an unknown type", printable_ascii(elements_.back().name)));
+          fail(fmt::format("a property of {} has an unknown type", scene::quote(elements_.back().name)));
         property.type = *type;
         property.name = words.back();
         elements_.back().properties.push_back(std::move(property));

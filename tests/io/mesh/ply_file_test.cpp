@@ -75,6 +75,9 @@ TEST(PlyFile, ReportsWrongCountsTypesAndIndices) {
   expect("3 0 1 2 7", "-3 0 1 2 7", "has the impossible length -3");
   expect("3 0 1 2 7", "3000000 0 1 2 7", "has the impossible length 3000000");
   expect("property float x", "property quad x", "unknown type");
+  const std::string long_name(100'000, 'a');
+  expect("element vertex 4\n", "element " + long_name + " 4\nproperty quad w\n", "unknown type");
+  expect("element vertex 4\n", "element " + long_name + " -4\n", "its header states '-4'");
   expect("property float x", "property float a", "no x, y and z");
   expect("vertex_indices", "corners", "no vertex_indices");
   expect("format ascii 1.0", "format text 1.0", "its format is 'text'");
