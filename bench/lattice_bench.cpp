@@ -55,7 +55,7 @@ struct Frame {
     space.project(m.positions, vertices);
     const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(),
                                               space.pixels_per_tangent()};
-    lattice = *frame::lattice_of(space, scene::bounds(m), scene::scalar_range(m), function, {});
+    lattice = frame::lattice_of(space, scene::bounds(m), scene::scalar_range(m), function, {})->lattice;
     lattice_vertices.resize(vertices.size());
     projection::make_lattice_vertices(vertices, m.scalars, lattice, false, lattice_vertices);
     lists = std::make_unique<projection::TileLists>(projected, grid, function, false);

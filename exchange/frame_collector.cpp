@@ -54,7 +54,6 @@ void FrameCollector::begin(int projector, const FrameBegin& begin, std::span<con
   }
   longest_ray_ = std::max(longest_ray_, begin.longest_ray);
   longest_edge_ = std::max(longest_edge_, begin.longest_edge);
-  lattice_ = begin.lattice;
   ++begins_;
   advance();
 }

@@ -29,8 +29,6 @@ class FrameCollector {
   [[nodiscard]] bool has_all_ends() const { return ends_ == ends_awaited_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
   [[nodiscard]] float longest_edge() const { return longest_edge_; }
-  /// The lattice of the frame's segments; its units are 0 if the frame has no lattice.
-  [[nodiscard]] const scene::Lattice& lattice() const { return lattice_; }
   [[nodiscard]] const FrameEnd& sums() const { return sums_; }
 
   /// Parts of a tile that wait to be merged.
@@ -77,7 +75,6 @@ class FrameCollector {
   int begins_ = 0, ends_ = 0, ends_awaited_ = 0;
   double longest_ray_ = 0;
   float longest_edge_ = 0;
-  scene::Lattice lattice_;
   FrameEnd sums_{};
   struct Debt {
     std::uint32_t tile;

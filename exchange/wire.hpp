@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
 
 #include "exchange/message.hpp"
+#include "scene/camera.hpp"
 #include "scene/frame_counters.hpp"
-#include "scene/lattice.hpp"
 
 /// Data from projectors to compositors: the structures of messages `begin`, `parts` and `end` (message.hpp), and the
 /// records of a part. Little endian, no padding.
@@ -60,9 +61,11 @@ struct FrameBegin {
   float longest_edge;   ///< longest edge of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
   std::uint32_t stopped = 0;  ///< 1: the projector was stopped: it sends no parts of this frame, though its cells are
                               ///< visible
-  scene::Lattice lattice{};   ///< lattice of the frame's segments; all 0 without a lattice
+  std::uint64_t on_lattice = 0;  ///< 1: the frame's segments are on the lattice that box and range determine
+  scene::Box box{};              ///< of the whole mesh
+  std::array<double, 2> scalar_range{};
 };
-static_assert(sizeof(FrameBegin) == 56);
+static_assert(sizeof(FrameBegin) == 96);
 
 struct PartHeader {
   std::uint32_t tile;

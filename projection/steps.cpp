@@ -32,8 +32,14 @@ std::size_t steps_passed(std::span<const Step> steps, double value) {
 /// Determines whether a cell must be cut at steps.
 class Rule {
  public:
-  Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const scene::Lattice* lattice)
-      : prepared_(prepared), mesh_(prepared.mesh()), steps_(steps), longest_ray_(longest_ray), lattice_(lattice) {
+  Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const scene::Lattice* lattice,
+       std::span<const scene::MagnifiedRange> magnified)
+      : prepared_(prepared),
+        mesh_(prepared.mesh()),
+        steps_(steps),
+        longest_ray_(longest_ray),
+        lattice_(lattice),
+        magnified_(magnified) {
     double most = 0;
     if (lattice == nullptr)
       for (const Step& step : steps) most = std::max(most, std::abs(step.value));
@@ -46,10 +52,12 @@ class Rule {
   /// next cell of the file. It may have any value in the first call.
   [[nodiscard]] std::size_t pieces(std::size_t tet, std::size_t& passed) const {
     const auto [low, high] = prepared_.scalar_bounds(tet);
+    if (reach_magnified(low, high)) return most_pieces(low, high);
     if (!passed_alone(passed, low - most_error_)) passed = steps_passed(steps_, low - most_error_);
     for (std::size_t i = passed; i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
-      if (steps_[i].surface) {
+      if (steps_[i].kind == Step::Kind::range_end) continue;
+      if (steps_[i].kind == Step::Kind::surface) {
         if (lattice_ == nullptr ? low < steps_[i].value && steps_[i].value <= high : passes_corner(steps_[i], tet))
           return most_pieces(low, high);
         continue;
@@ -63,6 +71,7 @@ class Rule {
   /// Whether pieces() is 0 for all cells of a block.
   [[nodiscard]] bool spares(std::size_t block) const {
     const auto [low, high] = prepared_.block_scalar_bounds(block);
+    if (reach_magnified(low, high)) return false;
     const std::size_t next = steps_passed(steps_, low - most_error_);
     return next == steps_.size() || steps_[next].value > high + most_error_;
   }
@@ -88,6 +97,15 @@ class Rule {
   static constexpr double most_slope = 1e5;
 
   static bool level(double low, double high) { return low == high; }
+
+  /// Whether a cell's scalars, with their errors, reach a magnified range. A single scalar is only rounded, and so
+  /// moves no further than to the end of a range.
+  [[nodiscard]] bool reach_magnified(double low, double high) const {
+    const double error = level(low, high) ? 0 : most_error_;
+    return std::ranges::any_of(magnified_, [&](const scene::MagnifiedRange& range) {
+      return low - error < range.high && high + error >= range.low;
+    });
+  }
 
   /// Whether rounding can move a scalar across the step. A face with a single scalar keeps the scalar, so only the
   /// scalar's own rounding can change its side.
@@ -144,6 +162,7 @@ class Rule {
   std::span<const Step> steps_;
   double longest_ray_;
   const scene::Lattice* lattice_;
+  std::span<const scene::MagnifiedRange> magnified_;
   double most_error_;  ///< upper bound of the error of any scalar near a step
 };
 
@@ -166,19 +185,23 @@ std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emiss
   return steps;
 }
 
-std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso) {
-  if (iso == nullptr) return steps;
-  for (const double value : iso->values()) steps.push_back({value, 0, true});
+std::vector<Step> with_cuts(std::vector<Step> steps, const IsoView* iso,
+                            std::span<const scene::MagnifiedRange> magnified) {
+  if (iso != nullptr)
+    for (const double value : iso->values()) steps.push_back({value, 0, Step::Kind::surface});
+  for (const scene::MagnifiedRange& range : magnified)
+    for (const double value : {range.low, range.high}) steps.push_back({value, 0, Step::Kind::range_end});
   std::ranges::stable_sort(steps, {}, &Step::value);
   return steps;
 }
 
 CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-                           const scene::Lattice* lattice, const std::stop_token& stop, scene::Team* team) {
+                           const scene::Lattice* lattice, std::span<const scene::MagnifiedRange> magnified,
+                           const std::stop_token& stop, scene::Team* team) {
   const std::size_t count = prepared.tets().size();
   if (steps.empty() || count == 0) return;
   if (lattice == nullptr && prepared.mesh().association == scene::Association::cell) return;
-  const Rule rule(prepared, steps, longest_ray, lattice);
+  const Rule rule(prepared, steps, longest_ray, lattice, magnified);
   const std::size_t words = (count + 63) / 64;
   if (team == nullptr)
     bits_.reset(words);
@@ -217,7 +240,7 @@ namespace {
 /// value of this surface, so that the face's scalars are exactly zero.
 double origin_of(const ProjectedMesh& projected, std::span<const Step> near, std::size_t tet, double low, double high) {
   for (const Step& step : near) {
-    if (!step.surface) continue;
+    if (step.kind != Step::Kind::surface) continue;
     int level = 0;
     for (const std::uint32_t v : projected.mesh->tets()[tet])
       level += projected.mesh->mesh().scalars[v] == step.value ? 1 : 0;
@@ -342,10 +365,15 @@ void SplitRasterizer<Segments>::cross(std::size_t segment, const IsoView& iso, I
 template class SplitRasterizer<RaySegments>;
 template class SplitRasterizer<AttributeSegments>;
 
-LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice) {
-  const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice,
+                               std::span<const scene::MagnifiedRange> magnified) {
+  const double lowest = std::min(front, back);
+  const auto range = std::ranges::find_if(magnified, [&](const auto& r) { return r.contains(lowest); });
+  const auto on_lanes = [&](double v) {
+    return static_cast<float>(lattice.scalar_step(range == magnified.end() ? v : range->moved(v)));
+  };
   LatticeScalars s{on_lanes(front), on_lanes(back)};
-  const std::size_t passed = steps_passed(steps, std::min(front, back));
+  const std::size_t passed = steps_passed(steps, lowest);
   if (passed > 0) {
     const float low = on_lanes(steps[passed - 1].value);
     s = {std::max(s.front, low), std::max(s.back, low)};

@@ -22,19 +22,22 @@ namespace tessera::projection {
 /// A value at which the transfer function steps. A scalar that equals the value is on the upper side.
 struct Step {
   double value;
-  double contrast;       ///< upper bound of a pixel's change per world length that a ray is on the wrong side
-  bool surface = false;  ///< whether this is the value of an iso-surface
+  double contrast;  ///< upper bound of a pixel's change per world length that a ray is on the wrong side
+  enum class Kind { step, surface, range_end } kind = Kind::step;  ///< surface: the value of an iso-surface
 };
 
 /// Returns the function's steps, ascending. `longest_ray` is an upper bound of a ray's world length in the mesh.
 std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray);
 
-/// Returns these steps together with the values of the iso-surfaces; `iso` may be null.
-std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso);
+/// Returns these steps together with the values of the iso-surfaces, and the ends of the magnified ranges; `iso` may be
+/// null.
+std::vector<Step> with_cuts(std::vector<Step> steps, const IsoView* iso,
+                            std::span<const scene::MagnifiedRange> magnified);
 
 /// Cells in which rounded scalars would not determine accurately enough where rays cross a step. The segments of these
 /// cells must be cut at the steps (SplitRasterizer). The criterion is the error of a scalar, divided by the change of
-/// the scalar in the cell, times the change of a pixel if the whole ray were in cells like this.
+/// the scalar in the cell, times the change of a pixel if the whole ray were in cells like this. Cells that reach a
+/// magnified range are among them.
 ///
 /// The result for a cell depends only on the cell's scalars and corners and on data that all processes share. So the
 /// segments of the cell have the same bits wherever it is projected.
@@ -45,7 +48,8 @@ class CellsAtSteps {
   /// double precision. Runs in the caller's task arena (oneTBB). Throws scene::FrameStopped once `stop` is requested.
   /// Each member of a team examines its share of the cells, and all members get all results.
   CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-               const scene::Lattice* lattice, const std::stop_token& stop = {}, scene::Team* team = nullptr);
+               const scene::Lattice* lattice, std::span<const scene::MagnifiedRange> magnified = {},
+               const std::stop_token& stop = {}, scene::Team* team = nullptr);
 
   [[nodiscard]] bool contain(std::uint32_t tet) const { return !empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0; }
   [[nodiscard]] bool empty() const { return bits_.size() == 0; }
@@ -81,10 +85,11 @@ extern template class SplitRasterizer<RaySegments>;
 extern template class SplitRasterizer<AttributeSegments>;
 
 /// Converts the scalars at the ends of a SplitRasterizer's segment to steps of the lattice, as floats that are on the
-/// same sides of all steps of the function as before.
+/// same sides of all steps of the function as before. Scalars in a magnified range are moved.
 struct LatticeScalars {
   float front, back;
 };
-LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice);
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice,
+                               std::span<const scene::MagnifiedRange> magnified = {});
 
 }  // namespace tessera::projection

@@ -348,6 +348,7 @@ FrameStatistics FrameProjector::project_in_arena(const FrameTask& frame, const T
         depth_limits_of(*frame.space, *frame.lattice, brightest(frame), settings_.emission, longest_ray(frame)),
         culled.steps,
         context.at_steps,
+        frame.magnified,
         prepared_->mesh().association == scene::Association::point ? frame.light : nullptr,
         frame.space};
     return std::make_unique<Worker<LatticeSource>>(sinks.on_lattice(), std::move(cells), context, view);
@@ -410,8 +411,9 @@ FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projec
   projection::CellsAtSteps at_steps;
   if (exact || projected.iso != nullptr) {
     if (exact) steps = projection::steps_of(brightest(frame), settings_.emission, longest_ray(frame));
-    steps = projection::with_surfaces(std::move(steps), projected.iso);
-    at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray(frame), frame.lattice, stop, team.team);
+    steps = projection::with_cuts(std::move(steps), projected.iso, frame.magnified);
+    at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray(frame), frame.lattice, frame.magnified, stop,
+                                        team.team);
   }
   const bool shows_color_alone = settings_.emission == Emission::independent;
   using Faces = std::optional<projection::FrameFaces>;

@@ -22,14 +22,15 @@
 
 namespace tessera::frame {
 
-/// A frame to project. `faces` and `lattice` exclude each other.
+/// A frame to project.
 struct FrameTask {
   const projection::PixelSpace* space;
   projection::TileGrid grid;
   const scene::TransferFunction* function;
-  const scene::SurfaceSet* surfaces = nullptr;        ///< surfaces inside the volume; may be null or empty
-  std::span<const projection::SurfaceFaces> faces{};  ///< triangle surfaces
-  const scene::Lattice* lattice = nullptr;            ///< lattice on which to render; null: render in double precision
+  const scene::SurfaceSet* surfaces = nullptr;         ///< surfaces inside the volume; may be null or empty
+  std::span<const projection::SurfaceFaces> faces{};   ///< triangle surfaces
+  const scene::Lattice* lattice = nullptr;             ///< lattice on which to render; null: render in double precision
+  std::span<const scene::MagnifiedRange> magnified{};  ///< ranges of the lattice's scalars
   /// On the lattice: lighting of the matter of point data; null: no lighting.
   const projection::MatterLight* light = nullptr;
   std::int32_t number = -1;  ///< frame number for the trace

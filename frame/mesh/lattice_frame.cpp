@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <vector>
 
 #include "projection/lattice/lattice_rasterizer.hpp"
 #include "projection/matter_light.hpp"
@@ -85,9 +86,9 @@ double most_length_per_depth(const projection::PixelSpace& space) { return space
 
 }  // namespace
 
-std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
-                                         const std::array<double, 2>& scalar_range,
-                                         const scene::TransferFunction& transfer_function, const Settings& settings) {
+std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                       const std::array<double, 2>& scalar_range,
+                                       const scene::TransferFunction& transfer_function, const Settings& settings) {
   using scene::Lattice;
   const std::optional<scene::Shading>& shading = settings.mesh.shading;
   const scene::TransferFunction function =
@@ -114,11 +115,9 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   const auto knots = function.knots();
   const auto [low, high] = with_values(scalar_range, settings.surfaces);
   const double first = std::clamp(knots.front().value, low, high), last = std::clamp(knots.back().value, low, high);
-  lattice.scalar_origin = first + (last - first) / 2;
-  const double reach =
-      std::max({high - lattice.scalar_origin, lattice.scalar_origin - low, 1e-12 * std::abs(lattice.scalar_origin)});
+  const double origin = first + (last - first) / 2;
+  const double reach = std::max({high - origin, origin - low, 1e-12 * std::abs(origin)});
   if (!std::isfinite(reach)) return std::nullopt;
-  lattice.scalar_unit = Lattice::unit_for(margin * reach);
   const double length = std::min(longest, glm::length(box.high - box.low));
   const bool independent = settings.emission == scene::Emission::independent;
   const double of_surfaces = scene::SurfaceSet(settings.surfaces, transfer_function).max_color();
@@ -127,28 +126,25 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
       most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step});
   if (!(most_error > 0)) return std::nullopt;
   const double brightest = std::max({1.0, function.max_color() * (independent ? length : 1), of_surfaces});
+  std::vector<FunctionPiece> pieces;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;
-    const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
-    if (on_lanes(a.value) == on_lanes(b.value)) return std::nullopt;
-    // The error of a scalar is 16 steps (gradients over a square) or half of a float's last place.
-    const double reached =
-        std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
-    // Just below a step, the error is a whole last place, because a value that would round to the step becomes the next
-    // float below the step.
-    const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
-    const double scalar_error =
-        std::max(16 * lattice.scalar_unit, std::min(reached, reach) * (step_above ? 0x1p-23 : 0x1p-24));
     const glm::dvec3 color = glm::abs(b.color - a.color);
     const double seen = seen_length(length, std::min(a.extinction, b.extinction));
     const double depth = std::min(std::abs(b.extinction - a.extinction) * seen, most_change_of_depth) * brightest;
     // A triangle surface may show the colour itself.
     const double most_color =
         std::max({color.x, color.y, color.z}) * (independent ? std::max(seen, has_faces ? 1.0 : 0.0) : 1);
-    if (std::max(most_color, depth) * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
+    const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
+    pieces.push_back({a.value, b.value, std::max(most_color, depth), step_above});
   }
-  return lattice;
+  ScalarLattice scalars{lattice, 0};
+  scalars.place(origin, reach);
+  if (std::ranges::all_of(pieces, [&](const FunctionPiece& p) { return scalars.resolves(p, most_error); }))
+    return FrameLattice{scalars.lattice, transfer_function};
+  if (!settings.surfaces.empty() || !settings.mesh.device.backends.empty()) return std::nullopt;
+  return magnify(scalars, {low, high}, pieces, most_error, transfer_function);
 }
 
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,

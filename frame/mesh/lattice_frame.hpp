@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "frame/mesh/magnified_ranges.hpp"
 #include "frame/mesh/render.hpp"
 #include "projection/depth_limits.hpp"
 #include "projection/pixel_space.hpp"
@@ -20,16 +21,16 @@ namespace tessera::frame {
 ///   - the mesh's depth times the largest extinction is above 2000: 16 steps of the lattice, 1e-8 of the depth, could
 ///     be visible. With perspective, the longest ray of the image replaces the depth;
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could exceed its share of
-///     the error (scene/error_budget.hpp);
-///   - two steps of the function are so close together that the lattice cannot separate them;
+///     the error (scene/error_budget.hpp), and does so in too many ranges to magnify them, or there are surfaces, or
+///     devices, which know the function without magnified ranges;
 ///   - there are both triangle surfaces and iso-surfaces: where they nearly touch, the lattice cannot resolve their
 ///     order;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;
 ///   - the lattice is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.
-std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
-                                         const std::array<double, 2>& scalar_range,
-                                         const scene::TransferFunction& function, const Settings& settings);
+std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                       const std::array<double, 2>& scalar_range,
+                                       const scene::TransferFunction& function, const Settings& settings);
 
 /// Returns the limits by which single cells need double precision on this lattice. `longest_ray` is an upper bound of a
 /// ray's length in the whole mesh, world units.

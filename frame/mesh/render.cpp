@@ -101,15 +101,15 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     return std::make_unique<compositor::DeepSink>(scene, window, transfer_function, settings.emission,
                                                   frame.deep_accuracy, *collector);
   };
-  const std::optional<scene::Lattice> lattice =
+  const std::optional<FrameLattice> lattice =
       collector ? std::nullopt
                 : lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings);
   std::optional<integrals::LaneTable> table;
   if (lattice) {
-    table.emplace(transfer_function, *lattice, settings.emission);
-    surfaces.place_on(*lattice);
+    table.emplace(lattice->function, lattice->lattice, settings.emission);
+    surfaces.place_on(lattice->lattice);
     scene.table = &*table;
-    scene.lattice = *lattice;
+    scene.lattice = lattice->lattice;
   }
   FrameStatistics counted = state_->projector.project(
       {.space = &space,
@@ -117,7 +117,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
        .function = &transfer_function,
        .surfaces = &surfaces,
        .faces = faces,
-       .lattice = lattice ? &*lattice : nullptr,
+       .lattice = lattice ? &lattice->lattice : nullptr,
+       .magnified = lattice ? std::span<const scene::MagnifiedRange>(lattice->magnified)
+                            : std::span<const scene::MagnifiedRange>(),
        .light = light ? &*light : nullptr,
        .watch = watch},
       {.in_double = sink_in_double,

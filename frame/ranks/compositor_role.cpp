@@ -16,6 +16,7 @@
 #include "compositor/image_assembly.hpp"
 #include "compositor/tile_merger.hpp"
 #include "exchange/frame_collector.hpp"
+#include "frame/mesh/lattice_frame.hpp"
 #include "frame/ranks/distributed_roles.hpp"
 #include "frame/ranks/run_error.hpp"
 #include "frame/ranks/worker_threads.hpp"
@@ -67,6 +68,7 @@ struct Frame {
   scene::SurfaceSet surfaces;
   std::optional<projection::MatterLight> light;
   compositor::TileSender sender;
+  std::optional<FrameLattice> lattice;        ///< set for lattice segments
   std::optional<integrals::LaneTable> table;  ///< set for lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the units of the table
   double start_us = 0;
@@ -146,9 +148,14 @@ class CompositorLoop {
         to.collector.begin(projector, begin, reader.take_bytes(begin.tiles / 8 + (begin.tiles % 8 != 0 ? 1 : 0)));
         reader.finish();
         if (begin.stopped != 0) to.stopped = true;
-        if (!to.table && begin.lattice.depth_unit > 0) {
-          to.table.emplace(run_.function, begin.lattice, run_.settings.render.emission);
-          to.surfaces.place_on(begin.lattice);
+        if (begin.on_lattice != 0 && !to.lattice) {
+          to.lattice = lattice_of(to.space, begin.box, begin.scalar_range, run_.function, run_.settings.render);
+          if (!to.lattice)
+            throw scene::Error(scene::ErrorCode::system_failure,
+                               "exchange: a projector has a lattice and this compositor has none; give all ranks the "
+                               "same arguments");
+          to.table.emplace(to.lattice->function, to.lattice->lattice, run_.settings.render.emission);
+          to.surfaces.place_on(to.lattice->lattice);
         }
         if (to.collector.has_all_begins())
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
@@ -230,7 +237,7 @@ class CompositorLoop {
     context.function = &run_.function;
     context.deep_accuracy = run_.settings.frame.by_depth() ? run_.settings.frame.deep_accuracy : 0;
     context.peel = run_.settings.frame.peel;
-    context.lattice = run_.device.device != nullptr ? &of.units : &of.collector.lattice();
+    context.lattice = run_.device.device != nullptr ? &of.units : of.lattice ? &of.lattice->lattice : nullptr;
     context.table = of.table ? &*of.table : nullptr;
     context.trace = trace_;
     context.device = run_.device.device.get();
@@ -256,9 +263,9 @@ class CompositorLoop {
       exchange::FrameCollector::Waiting waiting = of.collector.take(tile);
       const double longest_ray = of.collector.longest_ray();
       const float longest_edge = of.collector.longest_edge();
-      const bool on_lattice = of.collector.lattice().depth_unit > 0;
+      const bool on_lattice = of.lattice.has_value();
       if (run_.device.device != nullptr && of.units.depth_unit == 0) {
-        of.units = on_lattice ? of.collector.lattice() : compositor::device_units(run_.function, longest_ray);
+        of.units = on_lattice ? of.lattice->lattice : compositor::device_units(run_.function, longest_ray);
         if (!of.table) of.table.emplace(run_.function, of.units, run_.settings.render.emission);
       }
       all = waiting.all;

@@ -80,16 +80,16 @@ class FrameSinks {
     if (!settings_.frame.by_depth() && (!runs_end_at_faces || makes_pixels_))
       lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
-    table_.emplace(run.function, *lattice_, settings_.render.emission);
-    surfaces_.place_on(*lattice_);
+    table_.emplace(lattice_->function, lattice_->lattice, settings_.render.emission);
+    surfaces_.place_on(lattice_->lattice);
     scene_.table = &*table_;
-    scene_.lattice = *lattice_;
+    scene_.lattice = lattice_->lattice;
   }
   FrameSinks(const FrameSinks&) = delete;
   FrameSinks& operator=(const FrameSinks&) = delete;
 
   [[nodiscard]] const projection::PixelSpace& space() const { return space_; }
-  [[nodiscard]] const std::optional<scene::Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const std::optional<FrameLattice>& lattice() const { return lattice_; }
   [[nodiscard]] const scene::SurfaceSet& surfaces() const { return surfaces_; }
   [[nodiscard]] const projection::MatterLight* light() const { return scene_.light; }
 
@@ -116,7 +116,7 @@ class FrameSinks {
       return std::make_unique<compositor::PixelSink<sorting::LatticeEncoding>>(scene_, packs_, deliver_);
     if (settings_.exchange == Exchange::segments)
       return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(
-          *lattice_, deliver_, light_ && mesh_.part.association == scene::Association::point);
+          lattice_->lattice, deliver_, light_ && mesh_.part.association == scene::Association::point);
     return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene_, cut_, deliver_);
   }
 
@@ -133,7 +133,7 @@ class FrameSinks {
   projection::MeshNormals normals_;
   std::optional<projection::MatterLight> light_;
   compositor::TileScene scene_;
-  std::optional<scene::Lattice> lattice_;
+  std::optional<FrameLattice> lattice_;
   std::optional<integrals::LaneTable> table_;
 };
 
@@ -184,7 +184,9 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                         .tiles = 0,
                         .longest_edge = mesh.longest_edge,
                         .stopped = stopped ? 1u : 0u,
-                        .lattice = sinks.lattice().value_or(scene::Lattice{})});
+                        .on_lattice = sinks.lattice() ? 1u : 0u,
+                        .box = mesh.box,
+                        .scalar_range = mesh.scalar_range});
   };
   TileSinks tile_sinks{.in_double = [&] { return sinks.make(); },
                        .on_lattice = [&] { return sinks.make_on_lattice(); },
@@ -201,7 +203,9 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                                     .function = &run.function,
                                     .surfaces = &sinks.surfaces(),
                                     .faces = faces,
-                                    .lattice = sinks.lattice() ? &*sinks.lattice() : nullptr,
+                                    .lattice = sinks.lattice() ? &sinks.lattice()->lattice : nullptr,
+                                    .magnified = sinks.lattice() ? std::span(std::as_const(sinks.lattice()->magnified))
+                                                                 : std::span<const scene::MagnifiedRange>(),
                                     .light = sinks.light(),
                                     .number = number,
                                     .longest_edge = mesh.longest_edge,

@@ -106,7 +106,8 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
     }
     out.front[out.size] = view.lattice.depth_step(s.front[i]);
     out.back[out.size] = view.lattice.depth_step(s.back[i]);
-    const LatticeScalars scalars = lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice);
+    const LatticeScalars scalars =
+        lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice, view.magnified);
     out.scalar_front[out.size] = scalars.front;
     out.scalar_back[out.size] = scalars.back;
     ++out.size;

@@ -38,6 +38,7 @@ struct LatticeView {
   DepthLimits depth_limits{};
   std::span<const Step> steps{};           ///< steps of the transfer function
   const CellsAtSteps* at_steps = nullptr;  ///< the cells that are irregular because of these steps; null: none
+  std::span<const scene::MagnifiedRange> magnified{};
   /// Lighting of the matter of point data: segments get a SegmentLight; null: no lighting.
   const MatterLight* light = nullptr;
   const PixelSpace* space = nullptr;  ///< only needed with `light`
