@@ -22,12 +22,15 @@ struct Range {
 /// Returns the ranges of the pieces that the lattice does not resolve, ascending; nothing if a range would be too wide.
 std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, double low, double high,
                                                std::span<const FunctionPiece> pieces, double most_error) {
+  const double error = scalars.reach * float_error;
+  const double separate =
+      2.5 * error;  // two numbers at this distance are two floats, which are at most 2 * error apart
   std::vector<Range> ranges;
   for (const FunctionPiece& piece : pieces) {
     if (scalars.resolves(piece, most_error)) continue;
     // A range of width w is magnified by (high - low) / w.
     const double most_width =
-        most_error * (piece.high - piece.low) / piece.change * ((high - low) / (scalars.reach * float_error));
+        (piece.high - piece.low) * (high - low) / std::max(separate, error * piece.change / most_error);
     const double begin = std::max(piece.low, low), end = std::min(piece.high, high);
     if (!ranges.empty()) {
       Range& last = ranges.back();
@@ -42,15 +45,13 @@ std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, dou
     if (end - begin > most_width) return std::nullopt;
     ranges.push_back({begin, end, most_width});
   }
-  // The usual steps of the lattice separate the two ends of touching ranges: floats are at most twice `float_error`
-  // apart.
-  const double least_width = 2.5 * scalars.reach * float_error;
+  // The two ends of touching ranges are also among the scalars that are not moved.
   double begin = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (i == 0 || ranges[i].low != ranges[i - 1].high) begin = ranges[i].low;
     const double next = i + 1 < ranges.size() ? ranges[i + 1].low : std::numeric_limits<double>::infinity();
     if (ranges[i].high == next) continue;
-    ranges[i].high = std::max(ranges[i].high, begin + least_width);
+    ranges[i].high = std::max(ranges[i].high, begin + separate);
     if (ranges[i].high > next || ranges[i].high - ranges[i].low > ranges[i].most_width) return std::nullopt;
   }
   return ranges;
@@ -81,7 +82,7 @@ scene::TransferFunction moved_knots(const scene::TransferFunction& function, dou
   };
   for (const scene::Knot& knot : function.knots()) {
     while (range != ranges.end() && range->low <= knot.value) begin_range();
-    if (knot.value > end && knot.value < highest) knots.push_back(knot);
+    if (knot.value > end && knot.value <= highest) knots.push_back(knot);
   }
   while (range != ranges.end()) begin_range();
   if (highest > knots.back().value) knots.push_back(at(function.evaluate(highest), highest));

@@ -64,7 +64,12 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
     for (const bool stepped : {false, true}) {
       SCOPED_TRACE(decades);
       constexpr double low = -0.1, high = 1.2, most_error = 1e-5;
-      const TransferFunction function = logarithmic(decades, 200, 1, stepped);
+      TransferFunction function = logarithmic(decades, 200, 1, stepped);
+      if (stepped) {  // also at the highest scalar
+        std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
+        knots.push_back({high, {0, 1, 0}, 0.5}), knots.push_back({high, {0, 0, 1}, 0});
+        function = TransferFunction(knots);
+      }
       const auto found = magnify({}, {low, high}, pieces_of(function), most_error, function);
       ASSERT_TRUE(found);
       ASSERT_FALSE(found->magnified.empty());
@@ -80,7 +85,9 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
       double most = 0;
       Random random(1);
       for (int i = 0; i < 20'000; ++i) {
-        const double s = random.chance(0.5) ? random.power(-decades - 0.5, 0.07) : random.uniform(low, high);
+        const double s = i == 0               ? high
+                         : random.chance(0.5) ? random.power(-decades - 0.5, 0.07)
+                                              : random.uniform(low, high);
         const auto range = std::ranges::find_if(found->magnified, [&](const auto& r) { return r.contains(s); });
         const double at = range == found->magnified.end() ? s : range->moved(s);
         const scene::Knot expected = function.evaluate(s), knot = found->function.evaluate(at);
