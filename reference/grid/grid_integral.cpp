@@ -78,6 +78,12 @@ void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, doub
   // Computed as a difference, so that there is no cancellation where knots are close but values are large.
   Cubic from_low = scalar;
   from_low.c[0] -= low.value - origin;
+  // Knots may be nearer to each other than the rounding of the cubic. Then a piece between them is too short to be
+  // visible, and any value between the knots is accurate enough.
+  const double width = high.value - low.value;
+  const double rounding =
+      0x1p-50 * (std::abs(scalar.c[0]) + std::abs(scalar.c[1]) + std::abs(scalar.c[2]) + std::abs(scalar.c[3]));
+  if (width > 0 && rounding > 1e-3 * width) from_low = {{width / 2, 0, 0, 0}};
   const auto along = [&](double at_low, double at_high) {
     if (!(high.value > low.value)) return Cubic{{at_low, 0, 0, 0}};
     const double slope = (at_high - at_low) / (high.value - low.value);

@@ -291,6 +291,32 @@ TEST(GridReference, ABlankSampleBlanksItsVoxelsAndNoMore) {
   EXPECT_NEAR(pixel.z, 5, rounding);
 }
 
+TEST(GridReference, KnotsNearerThanTheRoundingOfTheFieldHaveNoEffect) {
+  // Knots from 1e-40 to 1, and only those from 1e-12, where colour and extinction no longer change.
+  constexpr int count = 160;
+  std::vector<scene::Knot> all, large;
+  for (int n = 0; n <= count; ++n) {
+    const double x = std::min(1.0, n / (0.7 * count));
+    all.push_back({std::pow(10, 40.0 * n / count - 40), {x, 0.5 + 0.5 * std::sin(17 * x), 1 - x}, 2 * x});
+    if (x == 1) large.push_back(all.back());
+  }
+  scene::Camera camera;
+  camera.position = {1.8, -1.9, 2.1};
+  camera.parallel_scale = 1.5;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> decade(-40, 0);
+  for (int i = 0; i < 20; ++i) {
+    // Every second sample is large, so that the field is small in points only.
+    int n = 0;
+    const Source grid = sampled(lattice({4, 5, 6}, glm::dvec3(-1), glm::dvec3(1)),
+                                [&](const glm::dvec3&) { return ++n % 2 == 0 ? 1 : std::pow(10, decade(random)); });
+    const GridReference one(*grid, camera, {16, 16}, TransferFunction(all)),
+        other(*grid, camera, {16, 16}, TransferFunction(large));
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) expect_equal(one.pixel(x + 0.5, y + 0.5), other.pixel(x + 0.5, y + 0.5), 1e-6);
+  }
+}
+
 TEST(GridReference, ClippingCutsTheRay) {
   const Source source = sampled(lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1}), [](auto&) { return 1.0; });
   scene::Camera camera = looking({0, 0, 5}, {0, 0, 0}, ProjectionKind::orthographic, 1);
