@@ -136,7 +136,7 @@ Draft draft_ct() {
     draft.extinctions.push_back({point.value, -std::log1p(-point.opacity)});
   }
   draft.range = {ct_points.front().value, ct_points.back().value};
-  draft.name = "CT (Hounsfield units, air below -900 clear)";
+  draft.name = "CT (Hounsfield units; air, below -900, is transparent)";
   return draft;
 }
 

@@ -133,7 +133,7 @@ void LaneErrorBound::find_steps(const scene::TransferFunction& function, const L
     while (above < table.knot_count && edges[above + 1] < edges[e] + noise) ++above;
     const Matter a = matter_at(table, below, edges[e] - (below < e - 1 ? noise : 0.0f)),
                  b = matter_at(table, above, edges[e] + (above > e ? noise : 0.0f));
-    // The field of cell data consists of samples only, which are exact here.
+    // Cell data takes only the values of samples, which the table represents exactly.
     if (settings.cell_data && sharp[e] != 0) continue;
     double differs = difference(a, b, independent, settings.brightest), colors = color_difference(a, 1, b, 1);
     Matter dense = a.extinction > b.extinction ? a : b, thin = a.extinction > b.extinction ? b : a;

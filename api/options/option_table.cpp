@@ -55,7 +55,7 @@ constexpr OptionRow data_rows[] = {
     {"block", "NAME", pictures | info | chart | basic | list | meshes | state | data,
      "files in blocks: draw only this block, one of those that info lists; may be repeated"},
     {"block", "NAME", convert | list,
-     "of a mesh in blocks: write only this block; may be repeated; of .bricks: samples per side of a block (default "
+     "mesh in blocks: write only this block; may be repeated; to .bricks: samples per side of a brick (default "
      "64)"},
     {"drop-duplicates", "", reading | flag | meshes | state | data,
      "draw cells with the same corners only once, where parts of the mesh are given twice"},
@@ -67,11 +67,11 @@ constexpr OptionRow data_rows[] = {
      "box; may be repeated"},
     {"threshold", "MIN,MAX", reading | basic | state | data, "keep whole cells whose values are all in this range"},
     {"higher-order-tolerance", "REL", reading | meshes | data,
-     "largest distance of the tets that replace higher-order cells, relative to diagonal and range (default: by "
-     "--accuracy)"},
+     "largest error of the tets that replace higher-order cells, relative to the mesh's diagonal and the field's range "
+     "(default: by --accuracy)"},
     {"higher-order-tets", "N", reading | meshes | data,
-     "about how many tets may replace higher-order cells (default: by the mesh, from 262144; 0: linear cells with the "
-     "same corners)"},
+     "about how many tets may replace higher-order cells (default: 262144, more for many cells; 0: linear cells "
+     "with the same corners)"},
     {"labels", "on|off", pictures | volumes | data,
      "volumes: whether values are labels, each of which fills its sample's voxel (default: by the header or the "
      "values)"},

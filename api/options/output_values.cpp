@@ -25,7 +25,7 @@ Peel parse_peel(const std::string& word) {
   Peel peel;
   const std::optional<double> threshold = number_of<double>(word.substr(0, colon));
   if (!threshold || !(*threshold > 0 && *threshold < 1))
-    refuse_peel(word, "has no threshold, an opacity above 0 and below 1");
+    refuse_peel(word, "has no threshold (an opacity above 0 and below 1)");
   peel.threshold = *threshold;
   if (colon == std::string::npos) return peel;
   const std::optional<double> layers = number_of<double>(word.substr(colon + 1));

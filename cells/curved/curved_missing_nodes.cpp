@@ -15,8 +15,8 @@ template <std::size_t axes, class NodeAt>
 glm::dvec4 between_sides(const std::array<int, axes>& place, const std::array<int, axes>& order,
                          const NodeAt& node_at) {
   glm::dvec4 sum(0);
-  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {  // each axis uses the place itself, the axis'
-                                                                      // first place, or its last
+  // Each coordinate is that of `place`, or the first or last one of its axis.
+  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {
     std::array<int, axes> at = place;
     double weight = -1;
     int left = choices;

@@ -15,7 +15,7 @@ namespace tessera::compositor {
 /// Computes an image and, in addition, its layers (integrals/ray_layers.hpp), which are stored as deep samples: the
 /// first sample of a pixel is its first layer, and so on to the end of the ray. append_layers() makes the samples.
 ///
-/// A pixel stays open behind opaque matter until its last layer is opaque, too.
+/// A pixel whose image is opaque still accepts segments until its last layer is opaque as well.
 class PeelSink final : public TileSink<DoubleEncoding> {
  public:
   /// The values of `scene`, the window's image and `target` must outlive this object. Threads share `target`.

@@ -29,8 +29,8 @@ struct FrameStatistics {
   std::string composited_on;    ///< where a mesh was composited, on several ranks or on a device
   bool overlapping = false;     ///< meshes: cells of several ranks overlap, so that segments were sent instead of runs
   double milliseconds = 0;      ///< time from when all ranks were ready until the image was in memory
-  /// Grids, for each rank: its rectangle of the image (vertical edges may step by 4 pixels), number of integrated
-  /// pieces or samples, CPU seconds.
+  /// For grids, one entry per rank: the rank's rectangle of the image (vertical edges may step by 4 pixels), the number
+  /// of pieces or samples that it integrated, and its CPU seconds.
   std::vector<PixelRect> rectangles;
   std::vector<std::uint64_t> samples;
   std::vector<double> cpu_seconds;

@@ -203,7 +203,8 @@ constexpr std::array rows = {
     unread("Amira", ".am", "save it as .nrrd in 3D Slicer", begins_as_amira),
     unread("TIFF stack", ".tif .tiff", "save it as .nrrd in Fiji", begins_as_tiff),
     unread("microscope volume", ".czi .lif .nd2 .ims .oib .lsm", "save it as .nrrd in Fiji"),
-    unread("NumPy array", ".npy .npz", "write it as .raw by tofile, or .nrrd by pynrrd", begins_as_numpy),
+    unread("NumPy array", ".npy .npz", "write it as .raw with NumPy's tofile, or as .nrrd with pynrrd",
+           begins_as_numpy),
     unread("MATLAB data", ".mat", "write it as .raw by fwrite, or .nrrd by nrrdWriter"),
     unread("Zarr", ".zarr", "write it as .nrrd by pynrrd, or NetCDF by xarray"),
     // VTK XML of a kind that no other row has: damaged, or its reader determines the content.

@@ -149,7 +149,7 @@ void check_format(const scene::Grid& grid, const std::string& extension, const s
   std::vector<const char*> others;
   for (const char* other : {".vti", ".vtr", ".nrrd"})
     if (unsupported_property(grid.geometry, other) == nullptr) others.push_back(other);
-  throw scene::bad_input(fmt::format("{}: {} cannot state {}; write {}{}.bricks", target, extension, what,
+  throw scene::bad_input(fmt::format("{}: {} cannot store {}; write {}{}.bricks", target, extension, what,
                                      fmt::join(others, ", "), others.empty() ? "" : " or "));
 }
 

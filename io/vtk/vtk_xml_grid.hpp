@@ -34,9 +34,9 @@ struct VtkXmlFields {
   std::string global_ids, pedigree_ids;
 };
 
-/// One <Piece>: its arrays of each kind, without their numbers.
+/// One <Piece>: its arrays of each kind, without their values.
 struct VtkXmlPiece {
-  std::uint64_t points = 0, cells = 0;   ///< numbers of an unstructured grid
+  std::uint64_t points = 0, cells = 0;   ///< counts, for an unstructured grid
   std::string extent;                    ///< for the other grids
   std::vector<VtkXmlArray> coordinates;  ///< arrays in <Points> or <Coordinates>
   std::vector<VtkXmlArray> topology;     ///< in <Cells>

@@ -103,7 +103,7 @@ const VtkXmlArray& topology_of(const VtkXmlGrid& grid, std::size_t piece, const 
   const VtkXmlArray* const array = grid.pieces[piece].find(name);
   if (array == nullptr || array->components != 1)
     throw scene::bad_input(
-        fmt::format("{}: piece {} of it has no array '{}' of single numbers for its cells; the file "
+        fmt::format("{}: the cells of its piece {} have no one-component array '{}'; the file "
                     "is damaged, export it again",
                     source, piece, name));
   return *array;

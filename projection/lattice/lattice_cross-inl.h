@@ -48,9 +48,9 @@ struct CellFlags {
         behind(Set(DI(), static_cast<std::int32_t>(parts.behind >> from))) {}
 };
 
-/// Provides the values of the hits' cells. Each hit may belong to any of as many cells as there are lanes, from cell
-/// `from` on. A value of all these cells is one vector, which is permuted; with AVX-512, one permutation selects from
-/// two vectors.
+/// Provides, for each hit, the values of its cell. With N lanes, hits may belong to N cells from cell `from` on. One
+/// vector has one value of all these cells, and is permuted to give each hit its cell's value; with AVX-512, one
+/// permutation selects from two vectors.
 template <bool two, bool with_three>
 class AnyCell {
  public:

@@ -185,8 +185,8 @@ struct Sides {
   MD edge_on[4];  ///< faces that no ray passes: only thin faces of orthographic views
 };
 
-/// Finds the front faces, and sets the faces' inverse areas. `thin`: some face may be edge-on, which is rare; if a face
-/// is not certainly edge-on then, the cell becomes irregular.
+/// Finds the front faces, and sets the faces' inverse areas. `thin`: some face may be edge-on, which is rare. The cell
+/// of such a face becomes irregular, unless the face is certainly edge-on.
 template <bool perspective, bool thin>
 HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
   const VD zero = Zero(DD()), one = Set(DD(), 1);

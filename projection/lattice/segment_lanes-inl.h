@@ -58,7 +58,7 @@ HWY_INLINE void append_light(MF hit, VF own, VF white, SegmentStream& out) {
   StoreU(pack(white), DF(), out.white.data() + out.size);
 }
 
-/// Appends to SegmentStream::hit in the same way; must be called before append() is called for these segments.
+/// Appends to SegmentStream::hit what append() appends to the other arrays; must be called before append().
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
   const DI d;
   const LanePacker pack(RebindMask(d, hit));

@@ -128,7 +128,7 @@ struct Crossings {
   VF4 z_back, z_front, s_front, s_back;
 };
 
-/// Stores lanes one by one; used when some lanes have no partner in B, or when the clipping range cuts.
+/// Stores lanes one by one; used when some rays do not both enter and leave the cell, or the clipping range cuts them.
 HWY_NOINLINE void store_some(const Crossings& crossings, MF4 paired, std::uint64_t pixel_and_tet, const Cell& cell,
                              Arrays& to) {
   const DF4 f;

@@ -22,7 +22,7 @@ constexpr double nothing = 1e-12;    // lower scores are ignored
 /// Largest numbers of tets, and of tets with edges, that are examined in larger meshes.
 constexpr std::size_t most_tets = 1 << 18, most_tets_with_edges = 1 << 16;
 
-/// One pixel in `pixels_per_mark` of a cell is marked, at most `most_marks`.
+/// In each cell, one of `pixels_per_mark` pixels is marked, but not more than `most_marks` pixels.
 constexpr double pixels_per_mark = 32, most_marks = 64;
 
 class MeshSuspects {

@@ -263,7 +263,7 @@ PATH=/nowhere $program render m.vtu -o a.mp4 => write a_%04d.png => tessera rend
 tessera convert m.vtu a.xyz => choose .vtu or .tets => tessera convert m.vtu a.tets
 tessera convert m.vtu a.stl => choose .vtu or .tets => tessera convert m.vtu a.tets
 tessera convert m.vtu a.pvtu => is what convert --pieces writes => tessera convert m.vtu a.pvtu --pieces 2
-printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => write it as .raw by tofile, or .nrrd by pynrrd => I v.raw $raw
+printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => write it as .raw with NumPy's tofile, or as .nrrd with pynrrd => I v.raw $raw
 tessera convert v.vti a.png => choose .vti, .vtr, .nrrd => tessera convert v.vti a.nrrd
 tessera convert m.vtu m.vtu => choose another name => tessera convert m.vtu b.vtu
 tessera convert c.vtk b.tets => write .vtu, or smooth it => tessera convert c.vtk b.tets --smooth

@@ -42,10 +42,10 @@ struct RaySum {
   [[nodiscard]] RayFragment fragment(int x, int y, double z_back, float bound) const;
 };
 
-/// Casts rays pixel by pixel along a VoxelWalk, integrating each line exactly in double precision. It casts the rays of
-/// rectilinear grids, because rays that are not straight in index space are unsuitable for the lane kernels, and rays
-/// whose light in float lanes is uncertain (lane_error_bound.hpp). Surfaces are inserted between the parts of rays that
-/// they separate.
+/// Casts rays pixel by pixel along a VoxelWalk, integrating each linear piece exactly in double precision. There are
+/// two kinds of such rays: those of rectilinear grids, which are not straight in index space, as the lane kernels
+/// require; and those whose light in float lanes is uncertain (lane_error_bound.hpp). Surfaces are inserted between the
+/// parts of rays that they separate.
 ///
 /// Error     Below 1e-5 for any spacings, plus what the walk may omit (WalkSettings::tolerance, WalkSettings::least).
 /// Bits      The bits of a ray depend only on the ray and on where it is divided.
