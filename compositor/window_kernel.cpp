@@ -109,13 +109,6 @@ class PixelGroup {
       const MI takes = And(is_final, open);
       const VF length = IfThenElseZero(RebindMask(df, takes), ConvertTo(df, s.back - front) * length_per_step);
       s.front = IfThenElse(takes, front, none);
-      if (HWY_UNLIKELY(lights_ != nullptr)) {
-        // A light is half as long as a segment.
-        const VI slots = LoadU(d, state_.order.slots.data() + row * lanes);
-        const VI place = ShiftRight<1>(slots) + Iota(d, 0) * Set(d, static_cast<std::int32_t>(sizeof *lights_));
-        Store(GatherOffset(df, &lights_->own, place), df, light_.own + (row - from) * lanes);
-        Store(GatherOffset(df, &lights_->white, place), df, light_.white + (row - from) * lanes);
-      }
       light_.put_segment(s, length, table_.locate(s.scalar_front, s.scalar_back >= s.scalar_front),
                          (row - from) * lanes);
       if constexpr (runs) {
@@ -140,6 +133,20 @@ class PixelGroup {
                                      : load<runs, false>(from, to, final_step, nullptr);
   }
 
+  /// Loads the lights of the segments in the rows [from, to).
+  HWY_NOINLINE void load_lights(std::size_t from, std::size_t to) {
+    const DI d;
+    const DF df;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t row = from; row < to; ++row) {
+      // A light is half as long as a segment.
+      const VI slots = LoadU(d, state_.order.slots.data() + row * lanes);
+      const VI place = ShiftRight<1>(slots) + Iota(d, 0) * Set(d, static_cast<std::int32_t>(sizeof *lights_));
+      Store(GatherOffset(df, &lights_->own, place), df, light_.own + (row - from) * lanes);
+      Store(GatherOffset(df, &lights_->white, place), df, light_.white + (row - from) * lanes);
+    }
+  }
+
   /// Composites the segments before `final_step`; returns the number of segments that are finished.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
     done_ = Zero(DI());
@@ -149,7 +156,10 @@ class PixelGroup {
       // once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
-      if (HWY_UNLIKELY(lights_ != nullptr)) light_.light_matter(to - from);
+      if (HWY_UNLIKELY(lights_ != nullptr)) {
+        load_lights(from, to);
+        light_.light_matter(to - from);
+      }
       if (HWY_UNLIKELY(rules.surfaces != nullptr))
         light_.put_surfaces(*rules.surfaces, table_, rules.table->color_unit, rules.runs || some_unseen());
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;

@@ -143,7 +143,7 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
   scalars.place(origin, reach);
   if (std::ranges::all_of(pieces, [&](const FunctionPiece& p) { return scalars.resolves(p, most_error); }))
     return FrameLattice{scalars.lattice, transfer_function};
-  if (!settings.surfaces.empty() || !settings.mesh.device.backends.empty()) return std::nullopt;
+  if (has_faces || !settings.mesh.device.backends.empty()) return std::nullopt;
   return magnify(scalars, {low, high}, pieces, most_error, transfer_function);
 }
 

@@ -30,7 +30,7 @@ std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, dou
     if (scalars.resolves(piece, most_error)) continue;
     // A range of width w is magnified by (high - low) / w.
     const double most_width =
-        (piece.high - piece.low) * (high - low) / std::max(separate, error * piece.change / most_error);
+        (piece.high - piece.low) * ((high - low) / std::max(separate, error * piece.change / most_error));
     const double begin = std::max(piece.low, low), end = std::min(piece.high, high);
     if (!ranges.empty()) {
       Range& last = ranges.back();
@@ -121,8 +121,10 @@ std::optional<FrameLattice> magnify(ScalarLattice scalars, const std::array<doub
                                     const scene::TransferFunction& function) {
   const auto [low, high] = range;
   const double length = high - low;
+  if (!(length > 0)) return std::nullopt;
   for (std::size_t count = 1; count <= most_ranges;) {
     const double total = length + static_cast<double>(count) * (1 + gap) * length;
+    if (!std::isfinite(low + total)) return std::nullopt;
     scalars.place(low + total / 2, total / 2);
     const std::optional<std::vector<Range>> ranges = steep_ranges(scalars, low, high, pieces, most_error);
     if (!ranges || ranges->empty()) return std::nullopt;

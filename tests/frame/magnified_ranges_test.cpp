@@ -161,13 +161,15 @@ TEST(LogarithmicFunctions, AreRenderedOnTheLatticeWithinThePromise) {
             if (random.chance(0.3)) settings.emission = scene::Emission::independent;
             if (!cells && settings.emission == scene::Emission::absorption && random.chance(0.3))
               settings.mesh.shading = scene::Shading();
+            if (!cells && random.chance(0.4))
+              settings.surfaces.iso = {{function.knots()[4].value * 1.01, {}, 0.5}, {0.03, glm::dvec3(1, 0, 0), 0.4}};
             const scene::Camera camera = random_view(random, mesh).camera;
             FrameStatistics statistics;
             const scene::Image image = Renderer(mesh, settings).render(camera, size, function, &statistics);
             ++frames;
             if (!statistics.on_lattice) continue;
             ++on_lattice;
-            const reference::Reference reference(mesh, camera, size, function, settings.emission, {}, {},
+            const reference::Reference reference(mesh, camera, size, function, settings.emission, settings.surfaces, {},
                                                  settings.mesh.shading);
             const double promise = accuracy == 0 ? 2e-5 : accuracy;
             const reference::Judgement judged = reference::judge(image, reference, promise);
