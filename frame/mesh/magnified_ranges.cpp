@@ -22,9 +22,10 @@ struct Range {
 /// Returns the ranges of the pieces that the lattice does not resolve, ascending; nothing if a range would be too wide.
 std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, double low, double high,
                                                std::span<const FunctionPiece> pieces, double most_error) {
-  const double error = scalars.reach * float_error;
-  const double separate =
-      2.5 * error;  // two numbers at this distance are two floats, which are at most 2 * error apart
+  // Just below a step or the end of a range, the error is a whole last place, as in resolves().
+  const double error = 2 * scalars.reach * float_error;
+  // Two numbers at this distance are two floats, which are at most `error` apart.
+  const double separate = 1.25 * error;
   std::vector<Range> ranges;
   for (const FunctionPiece& piece : pieces) {
     if (scalars.resolves(piece, most_error)) continue;
