@@ -11,6 +11,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "exchange/loopback_transport.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/leaning_stack.hpp"
 #include "frame/plateaus.hpp"
 #include "projection/scanline/segment_tuple.hpp"
@@ -116,12 +117,6 @@ std::vector<FinishedFrame> render_once(const Parts& parts, const Shape& shape, c
 }
 
 bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
-
-double difference(const Image& a, const Image& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
-  return most;
-}
 
 /// Each projector separately, as on different machines, except images for which projectors work together.
 std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,

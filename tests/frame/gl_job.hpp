@@ -11,6 +11,7 @@
 
 #include "datasets/boxes.hpp"
 #include "exchange/loopback_transport.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/ranks/distributed.hpp"
 #include "projection/scanline/segment_tuple.hpp"
 #include "scene/mesh_facts.hpp"
@@ -103,12 +104,6 @@ inline std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene:
 }
 
 inline scene::TetMesh small_cube() { return datasets::cube(6); }
-
-inline double difference(const Image& a, const Image& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
-  return most;
-}
 
 #define TESSERA_NEEDS_OSMESA() \
   if (tests::osmesa_or_none() == nullptr) GTEST_SKIP() << "OSMesa cannot be opened"

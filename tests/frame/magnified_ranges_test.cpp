@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -13,13 +14,13 @@
 #include "api/random_cases.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
-#include "exchange/loopback_transport.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/mesh/render.hpp"
 #include "frame/random_clips.hpp"
-#include "frame/ranks/distributed.hpp"
+#include "frame/render_parts.hpp"
+#include "frame/surface_scenes.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"
-#include "scene/mesh_facts.hpp"
 
 namespace tessera::frame::magnified_ranges_test {
 namespace {
@@ -28,12 +29,7 @@ using scene::TransferFunction;
 
 constexpr scene::ImageSize size{32, 24};
 
-scene::Camera oblique() {
-  scene::Camera camera;
-  camera.position = {3.1, 2.3, 4.2};
-  camera.parallel_scale = 1.8;
-  return camera;
-}
+const scene::Camera oblique = view(scene::ProjectionKind::orthographic, {3.1, 2.3, 4.2});
 
 /// Waves of colour and extinction over the logarithm of scalars from 10^-decades to 1; with a step in the steepest part
 /// if `stepped`.
@@ -93,9 +89,9 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
         const scene::Knot expected = function.evaluate(s), knot = found->function.evaluate(at);
         EXPECT_NEAR(knot.extinction, expected.extinction, 1e-9);
         EXPECT_NEAR(knot.color.y, expected.color.y, 1e-9);
-        // Half of a float's last place further. The cells with scalars so near to the end of a range, or to a step, are
-        // cut there.
-        const double moved = at + std::abs(at - found->lattice.scalar_origin) * 0x1p-25;
+        // Half of a float's last place further, or more. The cells with scalars so near to the end of a range, or to a
+        // step, are cut there.
+        const double moved = at + std::abs(at - found->lattice.scalar_origin) * 0x1p-24;
         const auto cut = [&](double end) { return at <= end && end <= moved; };
         const double step = function.knots()[2].value;
         if (range == found->magnified.end()
@@ -108,6 +104,12 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
       EXPECT_GT(most, 0);
     }
   }
+}
+
+TEST(MagnifiedRanges, NeedScalarsThatDifferByAFiniteAmount) {
+  const TransferFunction function = logarithmic(8, 60, 1);
+  for (const auto& [low, high] : {std::array{1e-7, 1e-7}, {-1e308, 1e308}})
+    EXPECT_FALSE(magnify({}, {low, high}, pieces_of(function), 1e-5, function)) << low;
 }
 
 TEST(MagnifiedRanges, AreAtMostEight) {
@@ -188,7 +190,7 @@ TEST(LogarithmicFunctions, CutOnlyTheCellsThatReachASteepRange) {
   const auto in_double = [&](const scene::TetMesh& mesh) {
     FrameStatistics statistics;
     Settings settings;
-    Renderer(mesh, settings).render(oblique(), size, function, &statistics);
+    Renderer(mesh, settings).render(oblique, size, function, &statistics);
     EXPECT_TRUE(statistics.on_lattice);
     return std::pair(statistics.segments_in_double_precision, statistics.segments);
   };
@@ -208,42 +210,20 @@ TEST(LogarithmicFunctions, HaveTheSameImageOnRanks) {
   const TransferFunction function = logarithmic(8, 60, 2, true);
   DistributedSettings settings;
   settings.render.threads = 1;
-  const FrameJob job{oblique(), size};
+  const FrameJob job{oblique, size};
   FrameStatistics statistics;
   const scene::Image expected = Renderer(mesh, settings.render).render(job.camera, size, function, &statistics);
   ASSERT_TRUE(statistics.on_lattice);
   const auto parts = datasets::parts(mesh, 3, datasets::Partition::random_blobs, 5);
-  const scene::MeshFacts whole = scene::facts_of(mesh);
   for (const bool sharing : {false, true}) {
     for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
       settings.render.use.sharing = sharing;
       settings.exchange = exchange;
-      std::vector<FinishedFrame> frames;
-      exchange::run_ranks(3, [&](exchange::Transport& transport) {
-        DistributedSettings mine = settings;
-        mine.roles = assign_roles(3, 3, 2);
-        render_distributed(
-            transport, mine, std::span(&job, 1), function,
-            [&](std::size_t) {
-              const scene::TetMesh& part = parts[static_cast<std::size_t>(transport.rank())];
-              ProjectorMesh mine_of_mesh;
-              mine_of_mesh.part = part;
-              mine_of_mesh.global_tet = part.original_cell;
-              mine_of_mesh.diagonal = 4;
-              mine_of_mesh.box = whole.box;
-              mine_of_mesh.scalar_range = whole.scalar_range;
-              return mine_of_mesh;
-            },
-            [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
-      });
+      const auto frames = render_parts(parts, settings, job, function);
       ASSERT_EQ(frames.size(), 1u);
-      const std::vector<float>& found = frames[0].image.rgba;
-      ASSERT_EQ(found.size(), expected.rgba.size());
-      double most = 0;
-      for (std::size_t i = 0; i < found.size(); ++i)
-        most = std::max(most, std::fabs(double{found[i]} - double{expected.rgba[i]}));
+      ASSERT_EQ(frames[0].image.rgba.size(), expected.rgba.size());
       // Runs are rounded to float.
-      EXPECT_LE(most, exchange == Exchange::segments ? 0 : 2e-6) << sharing;
+      EXPECT_LE(difference(frames[0].image, expected), exchange == Exchange::segments ? 0 : 2e-6) << sharing;
     }
   }
 }

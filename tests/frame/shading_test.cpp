@@ -14,6 +14,7 @@
 #include "api/query_data.hpp"
 #include "api/random_cases.hpp"
 #include "datasets/modify.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/surface_scenes.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
@@ -133,12 +134,6 @@ RandomCase random_case(Random& random) {
 
 TEST(MeshShading, OfRandomMeshesMatchesTheReference) { frame::expect_random_cases_right(22, 100, random_case); }
 
-double difference(const Image& a, const Image& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::abs(double{a.rgba[i]} - b.rgba[i]));
-  return most;
-}
-
 TEST(MeshShading, OfSeveralRanksMatchesOne) {
   const scene::TetMesh mesh = datasets::cube(7);
   const TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0.2}, {1, {1, 0.4, 0.2}, 2}});
@@ -152,9 +147,9 @@ TEST(MeshShading, OfSeveralRanksMatchesOne) {
                         of_depth = alone.render(view, function, {.deep = true});
     EXPECT_TRUE(of_lanes.statistics.on_lattice);
     EXPECT_FALSE(of_depth.statistics.on_lattice);
-    EXPECT_LT(difference(of_lanes.image, of_depth.image), 2e-5);
+    EXPECT_LT(frame::difference(of_lanes.image, of_depth.image), 2e-5);
     settings.mesh.shading.reset();
-    EXPECT_GT(difference(Session(alone.dataset(), settings).render(view, function).image, of_lanes.image), 0.05);
+    EXPECT_GT(frame::difference(Session(alone.dataset(), settings).render(view, function).image, of_lanes.image), 0.05);
     settings.mesh.shading.emplace();
     for (const auto exchange : {Exchange::segments, Exchange::runs})
       for (const bool deep : {false, true}) {
@@ -167,7 +162,7 @@ TEST(MeshShading, OfSeveralRanksMatchesOne) {
           const RenderedFrame frame = session.render(view, function, {.deep = deep});
           if (!session.assembles()) return;
           if (exchange == Exchange::runs) {
-            EXPECT_LT(difference(frame.image, expected.image), 2e-6);
+            EXPECT_LT(frame::difference(frame.image, expected.image), 2e-6);
             return;
           }
           EXPECT_EQ(frame.image.rgba, expected.image.rgba);

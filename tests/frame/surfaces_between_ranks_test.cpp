@@ -8,45 +8,14 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/mesh/boundary_faces.hpp"
-#include "frame/ranks/distributed.hpp"
+#include "frame/render_parts.hpp"
 #include "scene/mesh_facts.hpp"
 
 /// Surfaces rendered by several ranks have the same position and light as with one rank.
 namespace tessera::frame::surfaces_between_ranks_test {
 namespace {
-
-std::vector<FinishedFrame> render(const std::vector<scene::TetMesh>& parts, const DistributedSettings& settings,
-                                  const FrameJob& job, const scene::TransferFunction& function) {
-  std::vector<FinishedFrame> frames;
-  scene::MeshFacts whole;
-  for (const scene::TetMesh& part : parts) whole = scene::joined(whole, scene::facts_of(part));
-  const auto ranks = static_cast<int>(parts.size());
-  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-    DistributedSettings mine = settings;
-    mine.roles = assign_roles(ranks, ranks, ranks);
-    render_distributed(
-        transport, mine, std::span(&job, 1), function,
-        [&](std::size_t) {
-          ProjectorMesh mesh;
-          const scene::TetMesh& part = parts[static_cast<std::size_t>(transport.rank())];
-          mesh.part = part;
-          mesh.global_tet = part.original_cell;
-          mesh.diagonal = 4;
-          mesh.box = whole.box;
-          mesh.scalar_range = whole.scalar_range;
-          return mesh;
-        },
-        [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
-  });
-  return frames;
-}
-
-double difference(const scene::Image& a, const scene::Image& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
-  return most;
-}
 
 /// Compares three ranks' images, as segments and as runs, with one process's. The ranks share their parts, or not.
 void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings settings, const FrameJob& job,
@@ -62,12 +31,12 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
     const auto parts = datasets::parts(mesh, 3, how, 5);
     settings.render.use.sharing = sharing;
     settings.exchange = Exchange::segments;
-    const auto segments = render(parts, settings, job, function);
+    const auto segments = render_parts(parts, settings, job, function);
     ASSERT_EQ(segments.size(), 1u);
     EXPECT_EQ(segments[0].image.rgba, expected.rgba) << "segments";
     EXPECT_EQ(segments[0].image.depth, expected.depth);
     settings.exchange = Exchange::runs;
-    const auto runs = render(parts, settings, job, function);
+    const auto runs = render_parts(parts, settings, job, function);
     // Runs are rounded to float: 6e-8 of their light each. Ranks that share no memory cut runs at triangles in double
     // precision.
     const bool cut = settings.render.surfaces.has_faces() && !sharing;
@@ -206,7 +175,7 @@ TEST(RunsBetweenRanks, ReportWhereCellsOverlap) {
         part.original_cell.resize(part.tets.size());
         for (auto& cell : part.original_cell) cell = number++;
       }
-      EXPECT_EQ(render(parts, settings, job, function).at(0).overlapping, apart < 2)
+      EXPECT_EQ(render_parts(parts, settings, job, function).at(0).overlapping, apart < 2)
           << apart << ", lattice " << lattice;
     }
   }
@@ -227,7 +196,8 @@ TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
   job.camera.position = {3.1, 2.3, 4.2};
   scene::DeepImage expected;
   Renderer(mesh, settings.render).render(job.camera, job.size, function, nullptr, &expected);
-  const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 5), settings, job, function);
+  const auto frames =
+      render_parts(datasets::parts(mesh, 3, datasets::Partition::interleaved, 5), settings, job, function);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].deep.begin, expected.begin);
   ASSERT_EQ(frames[0].deep.samples.size(), expected.samples.size());
