@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Fuzzes each of our own parsers for SECONDS (default 60), as many at once as there are cores, from a small corpus of
 # valid files. Fails on any crash, leak, undefined behaviour, hang or more than 2 GiB of memory; the input that caused
-# it is kept in build/fuzz/crashes. COUNTx instead of SECONDS tries COUNT inputs for each parser, which are the same
-# whenever the sources are the same: an empty corpus, one seed.
+# it is kept in build/fuzz/crashes. COUNTx instead of SECONDS tries COUNT inputs for each parser, from an empty corpus.
+# They are the same in all runs of the same sources, where setarch may fix addresses.
 # Usage: scripts/fuzz.sh [SECONDS | COUNTx] [TARGET...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,7 +22,7 @@ fuzz_one() {  # fuzz_one TARGET
   # New inputs go to the build's corpus; the seeds in the repository are only read.
   local corpus=$build/corpus/$name limit=(-max_total_time="$extent") start=()
   if [ "${extent%x}" != "$extent" ]; then
-    # Addresses are among the features that libFuzzer finds.
+    # Addresses and times must not guide libFuzzer: comparisons include addresses, entropic schedules times.
     if setarch -R true 2>/dev/null; then start=(setarch -R); fi
     limit=(-runs="${extent%x}" -seed=1 -entropic=0 -use_cmp=0) corpus=$build/repeated/$name
     rm -rf "$corpus"
