@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files/inflated_file.hpp"
+#include "readers/common/hdf5_references.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 #include "readers/med/med_file.hpp"
@@ -14,6 +15,7 @@ namespace {
 io::ForeignContents read_med(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   io::require_real_name(file);
   allow_for(file);
+  require_sound_references(file, ReferencesMay::point_below);
   const MedFile opened(file);
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();

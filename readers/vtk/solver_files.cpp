@@ -37,12 +37,12 @@
 
 #include "io/files/input_file.hpp"
 #include "io/files/whole_file.hpp"
+#include "readers/common/hdf5_references.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/cgns_zones.hpp"
 #include "readers/vtk/ensight_case.hpp"
 #include "readers/vtk/ensight_step.hpp"
 #include "readers/vtk/ensight_values.hpp"
-#include "readers/vtk/hdf5/hdf5_references.hpp"
 #include "readers/vtk/linear_only.hpp"
 #include "readers/vtk/odd_numbers.hpp"
 #include "readers/vtk/time_steps.hpp"

@@ -11,6 +11,7 @@
 
 #include "io/files/inflated_file.hpp"
 #include "io/files/input_file.hpp"
+#include "readers/common/hdf5_references.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"
@@ -65,7 +66,9 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
                       source_, scene::quote(named.string())));
     const auto* const binary = dynamic_cast<const XdmfBinaryController*>(array.getHeavyDataController(k).get());
     if (binary != nullptr) require_size(*binary, file);
-    if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
+    if (std::find(files_.begin(), files_.end(), file) != files_.end()) continue;
+    files_.push_back(file);
+    if (binary == nullptr) require_sound_references(file, ReferencesMay::point_below);
   }
 }
 

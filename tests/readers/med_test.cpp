@@ -272,6 +272,19 @@ TEST(Med, VersionTwoIsRead) {
   EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square of 4 under a height of 3
 }
 
+TEST(Med, RefusesFilesThatLeadToAnotherDirectory) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "in");
+  write_bar((folder / "outside.med").string());
+  write_version_2((folder / "in" / "bar.med").string());
+  const hid_t file = H5Fopen((folder / "in" / "bar.med").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "/ENS_MAA", H5P_DEFAULT), 0);
+  ASSERT_GE(H5Lcreate_external("../outside.med", "/ENS_MAA", file, "/ENS_MAA", H5P_DEFAULT, H5P_DEFAULT), 0);
+  H5Fclose(file);
+  test::expect_bad_input([&] { read_mesh(folder / "in" / "bar.med"); },
+                         {"bar.med", "refers to 'outside.med', which is neither in its directory nor below"});
+}
+
 TEST(Med, RefusesDamagedFilesInOneLine) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());

@@ -70,6 +70,22 @@ TEST(XdmfHdf5, ReadsCellsAndFieldsFromTheNeighbouringFile) {
     for (const std::uint32_t v : tet) EXPECT_EQ(mesh.mesh.scalars[v], mesh.mesh.positions[v].x);
 }
 
+TEST(XdmfHdf5, DataThatLeadToAnotherDirectoryAreRefused) {
+  if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
+  const test::TemporaryFolder folder;
+  const auto in = folder / "in";
+  std::filesystem::create_directory(in);
+  write_data((folder / "outside.h5").string());
+  write_data((in / "a.h5").string());
+  const hid_t file = H5Fopen((in / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "values", H5P_DEFAULT), 0);
+  ASSERT_GE(H5Lcreate_external("../outside.h5", "values", file, "values", H5P_DEFAULT, H5P_DEFAULT), 0);
+  H5Fclose(file);
+  const auto mesh = folder.write("in/a.xdmf", mesh_text("a.h5"));
+  test::expect_bad_input([&] { read_mesh(mesh); },
+                         {"a.h5", "refers to 'outside.h5', which is neither in its directory nor below"});
+}
+
 TEST(XdmfHdf5, DamagedDataAreRefusedInOneLine) {
   if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;

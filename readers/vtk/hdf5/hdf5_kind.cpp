@@ -8,10 +8,10 @@
 
 #include "io/files/inflated_file.hpp"
 #include "io/files/input_file.hpp"
+#include "readers/common/hdf5_references.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/hdf5/hdf5_file.hpp"
 #include "readers/vtk/hdf5/hdf5_grid.hpp"
-#include "readers/vtk/hdf5/hdf5_references.hpp"
 #include "readers/vtk/hdf5/vtk_hdf_mesh.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"

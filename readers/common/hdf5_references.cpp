@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "readers/vtk/hdf5/hdf5_references.hpp"
+#include "readers/common/hdf5_references.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "readers/vtk/hdf5/hdf5_file.hpp"
+#include "readers/common/hdf5_handle.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -179,6 +179,9 @@ class References {
 
 }  // namespace
 
-void require_sound_references(const std::filesystem::path& file, ReferencesMay may) { References(file, may).check(); }
+void require_sound_references(const std::filesystem::path& file, ReferencesMay may) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library would print an error for a file that is not HDF5
+  References(file, may).check();
+}
 
 }  // namespace tessera::readers
