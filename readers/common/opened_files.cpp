@@ -17,7 +17,7 @@ namespace {
 
 struct Opened {
   std::mutex mutex;
-  std::set<std::string> names;
+  std::set<std::string> names, named;
 };
 Opened& opened() {
   static Opened names;
@@ -71,6 +71,17 @@ std::vector<std::string> take_opened_files() {
   const std::lock_guard lock(opened().mutex);
   const std::set<std::string> names = std::exchange(opened().names, {});
   return {names.begin(), names.end()};
+}
+
+void note_named_file(const std::filesystem::path& file) {
+  const std::lock_guard lock(opened().mutex);
+  opened().named.insert(file.string());
+}
+
+std::vector<std::string> take_named_files() {
+  const std::lock_guard lock(opened().mutex);
+  const std::set<std::string> named = std::exchange(opened().named, {});
+  return {named.begin(), named.end()};
 }
 
 }  // namespace tessera::readers

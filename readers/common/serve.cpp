@@ -137,8 +137,12 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
     reply = error_json(
         scene::bad_input(fmt::format("{}: it cannot be read; have it written again, or in another format", source)));
   }
-  for (const std::string& name : take_opened_files())
-    reply["opened"].push_back(Json::binary(std::vector<std::uint8_t>(name.begin(), name.end())));
+  const auto add = [&](const char* key, const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+      reply[key].push_back(Json::binary(std::vector<std::uint8_t>(name.begin(), name.end())));
+  };
+  add("opened", take_opened_files());
+  add("named", take_named_files());
   return io::send_message(socket_to_caller, Json::to_cbor(reply), file.get());
 }
 

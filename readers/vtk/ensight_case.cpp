@@ -10,6 +10,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "readers/common/opened_files.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {
@@ -184,9 +185,11 @@ void EnsightCase::require_regular_files(const std::string& source) const {
       const std::string file = place_of(named, time).file;
       std::error_code unknown;
       const auto status = std::filesystem::status(folder_ / file, unknown);
-      if (!file.empty() && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+      if (file.empty() || !std::filesystem::exists(status)) continue;
+      if (!std::filesystem::is_regular_file(status))
         throw scene::bad_input(
             fmt::format("{}: it names {}, which is not a regular file; put one there", source, file));
+      note_named_file(folder_ / file);
     }
 }
 

@@ -17,6 +17,7 @@
 #include "cells/mesh_blocks.hpp"
 #include "cells/part_range.hpp"
 #include "io/files/input_file.hpp"
+#include "readers/common/opened_files.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/time_steps.hpp"
 #include "readers/vtk/vtk_parts.hpp"
@@ -24,6 +25,7 @@
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"
 #include "system/gzip.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -128,8 +130,14 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
     }
 }
 
+/// Whether a case's subdirectory of this name has files of the case: `system`, `constant`, a process's or a time's.
+bool belongs_to_case(const std::string& subdirectory) {
+  return subdirectory == "system" || subdirectory == "constant" || subdirectory.starts_with("processor") ||
+         number_of<double>(subdirectory).has_value();
+}
+
 /// Throws if a file that VTK's reader may open is a pipe, which would block the reader. Files directly in the directory
-/// of the case are not read.
+/// of the case are not read. Files of the case are protected from being replaced by outputs.
 void require_regular_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   std::filesystem::recursive_directory_iterator entry(folder, unknown);
@@ -138,6 +146,9 @@ void require_regular_files(const std::filesystem::path& folder, const std::strin
     if (entry.depth() > 0 && entry->exists(gone) && !entry->is_regular_file(gone) && !entry->is_directory(gone))
       throw scene::bad_input(
           fmt::format("{}: {} is not a regular file; remove it", source, entry->path().lexically_normal().string()));
+    if (entry.depth() > 0 && entry->is_regular_file(gone) &&
+        belongs_to_case(entry->path().lexically_relative(folder).begin()->string()))
+      note_named_file(entry->path());
   }
 }
 

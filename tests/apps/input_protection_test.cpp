@@ -2,12 +2,14 @@
 // No output replaces a file that the run reads: those named on the command line, and those named in these files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
+#include "support/foam_case.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -29,15 +31,18 @@ std::string raw_samples() {
 
 void write(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
 
-/// An EnSight Gold text file: a tetrahedron.
+/// An EnSight Gold text file: a tetrahedron, at two times.
 void write_ensight(const Folder& folder) {
-  write(folder / "e.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: e.geo\nVARIABLE\nscalar per node: p e.scl\n");
+  write(folder / "e.case",
+        "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: e.geo\nVARIABLE\nscalar per node: 1 p e.sc*\nTIME\ntime set: 1\n"
+        "number of steps: 2\nfilename start number: 0\nfilename increment: 1\ntime values: 0 1\n");
   write(folder / "e.geo",
         "one\ntet\nnode id assign\nelement id assign\npart\n         1\nbody\ncoordinates\n         4\n 0.00000e+00\n"
         " 1.00000e+00\n 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 1.00000e+00\n 0.00000e+00\n"
         " 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 1.00000e+00\ntetra4\n         1\n         1         2"
         "         3         4\n");
-  write(folder / "e.scl", "p\npart\n         1\ncoordinates\n 0.00000e+00\n 1.00000e+00\n 2.00000e+00\n 3.00000e+00\n");
+  for (const char* file : {"e.sc0", "e.sc1"})
+    write(folder / file, "p\npart\n         1\ncoordinates\n 0.00000e+00\n 1.00000e+00\n 2.00000e+00\n 3.00000e+00\n");
 }
 
 std::vector<Case> cases_in(const Folder& folder) {
@@ -62,6 +67,8 @@ std::vector<Case> cases_in(const Folder& folder) {
         "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
         "endsolid t\n");
   write_ensight(folder);
+  io::testing::write_foam(folder / "c", io::testing::Cubes(2), [](int) { return true; });
+  io::testing::write_control(folder / "c");
   const std::string cube = fs::path(mesh).filename();
   return {{{mesh, "--camera", folder / "cam.json", "--transfer-function", folder / "tf.json", "--config",
             folder / "c.toml", "--surface", folder / "t.stl"},
@@ -71,13 +78,14 @@ std::vector<Case> cases_in(const Folder& folder) {
           {{folder / "n.nhdr"}, {"n.nhdr", "n.raw"}},
           {{folder / "s.pvd"}, {"s.pvd", cube}},
           {{folder / "m.vtm"}, {"m.vtm", cube}},
-          {{folder / "e.case"}, {"e.case", "e.geo", "e.scl"}}};
+          {{folder / "e.case"}, {"e.case", "e.geo", "e.sc0", "e.sc1"}},
+          {{folder / "c"}, {"c/system/controlDict", "c/constant/polyMesh/points", "c/0/p", "c/1/p"}}};
 }
 
 std::map<std::string, std::string> all_bytes(const Folder& folder) {
   std::map<std::string, std::string> bytes;
-  for (const std::string& name : folder.names())
-    if (fs::is_regular_file(folder / name)) bytes[name] = contents(folder / name);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / ""))
+    if (entry.is_regular_file()) bytes[entry.path()] = contents(entry.path());
   return bytes;
 }
 
@@ -108,7 +116,9 @@ TEST(InputProtection, NoOutputReplacesAnInput) {
     if (works.status == 2 && works.err.find("is not installed") != std::string::npos) continue;  // not installed
     ASSERT_EQ(works.status, 0) << works.err;
     for (const std::string& file : each.files) {
-      const std::string link = elsewhere / ("link-" + file), hard = folder / ("hard-" + file);
+      std::string flat = file;
+      std::ranges::replace(flat, '/', '-');
+      const std::string link = elsewhere / ("link-" + flat), hard = folder / ("hard-" + flat);
       fs::remove(link);
       fs::create_symlink(folder / file, link);
       fs::create_hard_link(folder / file, hard);
@@ -212,7 +222,7 @@ TEST(InputProtection, OutputsOfAnEarlierRunAreReplaced) {
   const Outcome again = tessera(run);
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(all_bytes(folder).size(), before.size());
-  EXPECT_EQ(contents(folder / "a.png"), before.at("a.png"));
+  EXPECT_EQ(contents(folder / "a.png"), before.at(folder / "a.png"));
 }
 
 }  // namespace

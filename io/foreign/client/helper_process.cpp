@@ -270,12 +270,17 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
   int code = 0;
   try {
     json = Json::from_cbor(reply.bytes);
-    if (const auto opened = json.find("opened"); opened != json.end())
-      for (const Json& name : *opened) {
+    const auto note_files = [&](const char* key, auto* note) {
+      const auto names = json.find(key);
+      if (names == json.end()) return;
+      for (const Json& name : *names) {
         const std::filesystem::path file(std::string(name.get_binary().begin(), name.get_binary().end()));
         // Some readers open every file of a directory, including images of earlier runs, which are not inputs.
-        if (!is_picture(file)) system::note_read(file);
+        if (!is_picture(file)) note(file);
       }
+    };
+    note_files("opened", &system::note_read);
+    note_files("named", &system::note_named);
     if (const auto error = json.find("error"); error != json.end()) {
       line = error->at("line").get<std::string>();
       code = error->at("code").get<int>();
