@@ -2,6 +2,8 @@
 #include "io/text/text_file.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -17,6 +19,14 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 64u << 20;
 
+/// Whether the file is a device or a socket, which may keep a reader waiting forever. Standard input may be a terminal.
+bool may_never_end(const std::filesystem::path& file) {
+  struct stat facts {
+  }, input{};
+  if (::stat(file.c_str(), &facts) != 0 || S_ISREG(facts.st_mode) || S_ISFIFO(facts.st_mode)) return false;
+  return ::fstat(STDIN_FILENO, &input) != 0 || input.st_dev != facts.st_dev || input.st_ino != facts.st_ino;
+}
+
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file) {
@@ -25,6 +35,8 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (!std::filesystem::exists(status)) throw system::missing_file(file);
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(file.string() + ": is a directory; name a file in it");
+  if (may_never_end(file))
+    throw scene::bad_input(file.string() + ": is neither a regular file nor a pipe; give one of the two");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check its permissions");
   system::note_read(file);

@@ -10,9 +10,9 @@
 
 namespace tessera::io {
 
-/// Reads the whole of a small file (transfer function, camera). Throws Error(bad_input) if the file is missing, a
-/// directory, or larger than 64 MiB, which exceeds any useful file of this kind; Error(system_failure) if reading
-/// fails.
+/// Reads the whole of a small file (transfer function, camera), or of a pipe. Throws Error(bad_input) if the file is
+/// missing, a directory, a device other than standard input, or larger than 64 MiB, which exceeds any useful file of
+/// this kind; Error(system_failure) if reading fails.
 std::string read_text_file(const std::filesystem::path& file);
 
 /// Returns the first non-blank character, or 0 for an empty text; skips a byte order mark.

@@ -23,6 +23,12 @@ TEST(TextTransferFunction, ReportsASystemFileThatCannotBeRead) {
   test::expect_bad_input([] { read_text_file("/proc/self/mem"); }, {"cannot be read as text"});
 }
 
+// Reading a new pseudo-terminal, on which no program writes, once waited forever.
+TEST(TextTransferFunction, RefusesADevice) {
+  for (const char* device : {"/dev/ptmx", "/dev/zero", "/dev/full"})
+    test::expect_bad_input([&] { read_text_file(device); }, {device, "neither a regular file nor a pipe"});
+}
+
 TEST(TextTransferFunction, UsesNumbersAsGiven) {
   const auto loaded = parse_text_transfer_function("0 0.1 0.2 0.3 0\n10 1 1.5 0 4\n", "tf.txt", {});
   ASSERT_EQ(loaded.function.knots().size(), 2u);
