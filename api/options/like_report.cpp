@@ -63,6 +63,8 @@ void apply_like(OptionWords& words) {
     words.set_default("field", api::report_field(data));
     if (words.given_one_of({"transfer-function", "opacity-points", "log"})) return;
     words.set("transfer-function", Json{{"knots", function.at("knots")}}.dump());
+    if (function.value("scale", "") == "log" && words.given("color-bar") && !words.given("color-bar-range"))
+      words.set_default("color-bar-scale", "log");
     words.set_default("blend", method.at("blend").get<std::string>());
     words.set_default("emission", method.at("emission").get<std::string>());
     if (words.given_one_of({"shade", "no-shade", "light"}) || !method.at("shade").get<bool>()) return;

@@ -96,6 +96,7 @@ ExitCode RunOutput::finish() {
   if (data_) {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options_.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
+    if (options_.function.logarithmic) report_["transfer_function"]["scale"] = "log";  // also read by --like
   } else if (!options_.quiet) {
     print_lines(fmt::format("{}: all {} frames exist already, so nothing was rendered", options_.input().string(),
                             frames_.size()));

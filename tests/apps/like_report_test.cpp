@@ -71,6 +71,23 @@ TEST_F(LikeReport, GivesTheSameDataTheSamePicture) {
   }
 }
 
+TEST_F(LikeReport, GivesAColorBarTheSameScale) {
+  const std::string again = folder_ / "again.png", first = folder_ / "first.png", report = folder_ / "like.json";
+  const Words bar = {"--color-bar=right", "--color-bar-title", "p"};
+  for (const Words& options : {Words{}, Words{"--log"}, Words{"--log", "--color-bar-range", "0.5,2"}}) {
+    Words command = {"render", first_, "-o", first, "--report", report, "--size", "160x120"};
+    command.insert(command.end(), bar.begin(), bar.end());
+    command.insert(command.end(), options.begin(), options.end());
+    const Outcome made = tessera(command);
+    ASSERT_EQ(made.status, 0) << made.err;
+    Words like = {"render", first_, "-o", again, "--like", report};
+    like.insert(like.end(), bar.begin(), bar.end());
+    const Outcome run = tessera(like);
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(contents(again) == contents(first), options.size() < 2) << options.size();
+  }
+}
+
 TEST_F(LikeReport, OtherOptionsOverrideIt) {
   const Json like = report_of(folder_, {first_, "--size", "40x30", "--field", "p"});
   const std::string file = folder_.file("like.json", like.dump());
