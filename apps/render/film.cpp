@@ -189,7 +189,26 @@ class Film final : public Sink {
     }
     empty_.examine(static_cast<std::size_t>(&frame - frames_.data()), *rendered, step_.data(), step_.function(),
                    options_);
+    check_light(rendered->image);
     output_.add(frame, record);
+  }
+
+  /// Warns of the first image whose light is so bright that 32-bit floats use more than a quarter of the promised
+  /// error.
+  void check_light(const Image& image) {
+    // With absorption, light is at most the brightest colour.
+    const bool may_be_bright = options_.settings.emission == Emission::independent || step_.function().max_color() > 1;
+    const std::optional<double> promised = step_.session().promised_error();
+    if (warned_of_light_ || !may_be_bright || !promised || image.rgba.empty()) return;
+    const float brightest = *std::max_element(image.rgba.begin(), image.rgba.end());
+    const double rounding = brightest * 0x1p-24;
+    if (rounding <= *promised / 4) return;
+    warned_of_light_ = true;
+    output_.warn(fmt::format(
+        "pixels have light up to {:.3g}, which 32-bit floats round by up to {:.2g}; the accuracy {:.2g} is "
+        "not kept; give `{}--accuracy {:.1g}`, or a transfer function with darker colours",
+        brightest, rounding, *promised,
+        options_.settings.integrator.kind == IntegratorKind::exact ? "--integrator auto " : "", 8 * rounding));
   }
 
   void write_trace() {
@@ -222,6 +241,7 @@ class Film final : public Sink {
   RunOutput output_;
   ShownStep step_;
   EmptyPictures empty_;
+  bool warned_of_light_ = false;
   std::vector<double> frame_ms_;     ///< times of the current frame's repetitions
   std::vector<std::size_t> listed_;  ///< frames of the current list, each once per repetition
   std::size_t listed_before_ = 0;    ///< number of frames in earlier lists

@@ -144,6 +144,8 @@ R --transfer-function /proc/self/mem => check that it is the right file => R --t
 knots "0 1 1 1 0\n1 1 1 1 0\n" --iso 50 => ; give it opacity => knots "0 1 1 1 2\n1 1 1 1 3\n"
 knots "0 1e-9 0 0 0\n1 1e-9 0 0 0\n" --emission independent => give the transfer function brighter colours
     => knots "0 1 0 0 0\n1 1 0 0 0\n" --emission independent
+knots "0 1e5 2e5 3e5 0\n1 3e5 1e5 2e5 0\n" --emission independent => is not kept; give `--accuracy
+    => knots "0 1e5 2e5 3e5 0\n1 3e5 1e5 2e5 0\n" --emission independent --accuracy 1
 
 # methods
 R --accuracy 1e-3 --integrator sampled:4 => leave one of the two out => R --integrator sampled:4
