@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compositor/deep/deep_sink.hpp"
+#include "compositor/deep/layer_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
 #include "compositor/merge_kinds.hpp"
 #include "compositor/picture_sink.hpp"
@@ -69,6 +70,8 @@ class SegmentMerger : public TileMerger {
       else if (context_.deep_accuracy > 0)
         square.sink = std::make_unique<DeepSink>(scene_, window, *context_.function, context_.emission,
                                                  context_.deep_accuracy, deep_);
+    } else if (context_.peel) {
+      square.sink = std::make_unique<LayerSink>(scene_, window, *context_.function, *context_.peel, deep_);
     }
     if (!square.sink) square.sink = std::make_unique<PictureSink<Encoding>>(scene_, window);
     square.sink->start(square.rect);

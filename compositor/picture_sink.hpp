@@ -41,18 +41,9 @@ class PictureSink final : public TileSink<Encoding> {
 /// Writes the values of the pixels of `rect` to the window's image.
 template <class Encoding>
 void write_pixels(const TilePixels<Encoding>& pixels, const scene::PixelRect& rect, const ImageWindow& window) {
-  scene::Image& image = *window.image;
   std::size_t p = 0;
   for (int y = rect.y0; y < rect.y1; ++y)
-    for (int x = rect.x0; x < rect.x1; ++x, ++p) {
-      const PixelValue value = pixels.value(p);
-      const std::size_t at = image.index(x - window.x0, y - window.y0);
-      image.rgba[4 * at + 0] = static_cast<float>(value.red);
-      image.rgba[4 * at + 1] = static_cast<float>(value.green);
-      image.rgba[4 * at + 2] = static_cast<float>(value.blue);
-      image.rgba[4 * at + 3] = static_cast<float>(value.opacity);
-      image.depth[at] = static_cast<float>(value.depth);
-    }
+    for (int x = rect.x0; x < rect.x1; ++x, ++p) window.put(x, y, pixels.value(p));
 }
 
 template <class Encoding>

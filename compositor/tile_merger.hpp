@@ -32,7 +32,8 @@ struct MergeContext {
   float longest_edge;  ///< tuples: unit of their lengths
   scene::Emission emission;
   std::uint64_t budget_bytes;  ///< memory for the fragments of one tile that cannot be composited yet
-  const scene::TransferFunction* function = nullptr;  ///< only set for deep samples
+  /// For deep samples and layers: the transfer function, on the lattice if there is one.
+  const scene::TransferFunction* function = nullptr;
   double deep_accuracy = 0;    ///< > 0: the merger also makes deep samples from segments (deep_sink.hpp)
   std::optional<Peel> peel{};  ///< if set, the deep samples are layers (peel_sink.hpp)
   // For lattice segments:

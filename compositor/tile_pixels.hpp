@@ -15,12 +15,6 @@
 
 namespace tessera::compositor {
 
-/// A pixel of an image: premultiplied linear RGB, opacity, and the planar depth at which the pixel becomes visible, in
-/// world units; the depth is infinite if the pixel is empty.
-struct PixelValue {
-  double red, green, blue, opacity, depth;
-};
-
 /// A crossing of a surface in a batch of segments. It takes the place of a segment; its light is set after integration.
 struct CrossingInBatch {
   std::size_t at;

@@ -30,10 +30,26 @@ struct TileScene {
   }
 };
 
+/// A pixel of an image: premultiplied linear RGB, opacity, and the planar depth at which the pixel becomes visible, in
+/// world units; the depth is infinite if the pixel is empty.
+struct PixelValue {
+  double red, green, blue, opacity, depth;
+};
+
 /// Target of finished pixels. The image's first pixel is pixel (x0, y0) of the frame.
 struct ImageWindow {
   scene::Image* image;
   int x0 = 0, y0 = 0;
+
+  /// Sets pixel (x, y) of the frame.
+  void put(int x, int y, const PixelValue& value) const {
+    const std::size_t at = image->index(x - x0, y - y0);
+    image->rgba[4 * at + 0] = static_cast<float>(value.red);
+    image->rgba[4 * at + 1] = static_cast<float>(value.green);
+    image->rgba[4 * at + 2] = static_cast<float>(value.blue);
+    image->rgba[4 * at + 3] = static_cast<float>(value.opacity);
+    image->depth[at] = static_cast<float>(value.depth);
+  }
 };
 
 }  // namespace tessera::compositor

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "integrals/lane_table.hpp"
@@ -72,12 +73,41 @@ struct WindowState {
 double first_visible_depth(const scene::Lattice& lattice, const projection::LatticeSegment& segment,
                            const class integrals::SegmentIntegrator& integrator);
 
+/// The layers of the pixels of a square (integrals/ray_layers.hpp). The state of a pixel is the light of its current
+/// layer. Where a segment brings the transmittance to the layer's end, the segment is cut in double precision.
+class WindowLayers {
+ public:
+  /// A segment in which a layer of a pixel may end.
+  struct End {
+    std::uint32_t pixel;
+    projection::LatticeSegment segment;
+    projection::SegmentLight light;
+  };
+
+  WindowLayers() = default;
+  WindowLayers(const WindowLayers&) = delete;
+  WindowLayers& operator=(const WindowLayers&) = delete;
+  virtual ~WindowLayers() = default;
+
+  /// Adds these segments to the pixels, whose state is that in front of the segments. Updates the state and the numbers
+  /// below.
+  virtual void add(std::span<const End> ends) = 0;
+
+  /// The transmittance at which the current layer of a pixel ends, and that below which the pixel is closed. Only the
+  /// last layer, which never ends, closes the pixel.
+  alignas(64) std::array<double, WindowState::pixels> end_at, least;
+  /// The last visible segment of the layer. `last_back` is WindowState::not_yet before there is one.
+  alignas(64) std::array<std::int32_t, WindowState::pixels> last_front, last_back;
+  alignas(64) std::array<float, WindowState::pixels> last_scalar_front, last_scalar_back;
+};
+
 /// The parameters of compositing windows.
 struct WindowRules {
   const integrals::LaneTable* table;
   double least_transmittance;                   ///< pixels with less transmittance are closed
   bool runs = false;                            ///< segments that do not touch begin a new run
   const scene::SurfaceSet* surfaces = nullptr;  ///< the surfaces whose crossings are among the segments; null: none
+  WindowLayers* layers = nullptr;               ///< if not null, the state of a pixel is that of its current layer
 };
 
 /// A run ends if the front of the next segment is further from the back of the run than this. The depths of neighbours

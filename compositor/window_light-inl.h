@@ -24,6 +24,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "compositor/surface_lights-inl.h"
@@ -229,7 +230,7 @@ class GroupLight {
 
   /// Adds the first `count` rows. Returns whether some pixel stays open.
   HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
-    if (!rules.runs) return add_touching<false>(count, rules);
+    if (!rules.runs) return rules.layers == nullptr ? add_touching<false>(count, rules) : add_layers(count, rules);
     // In most cases, no run ends between the rows. The rows are then added in the same way as for an image. Independent
     // emission also ends runs.
     if (light_.touching && !independent_) return add_touching<true>(count, rules);
@@ -349,6 +350,84 @@ class GroupLight {
     }
     save(runs);
     return !AllFalse(d, open_lanes);
+  }
+
+  /// Adds rows to layers. Returns whether some pixel stays open.
+  HWY_NOINLINE bool add_layers(std::size_t count, const WindowRules& rules) {
+    const DI d;
+    const DF df;
+    WindowLayers& layers = *rules.layers;
+    RayLight ray(state_, pixel_);
+    Doubles end_at = load(&layers.end_at[pixel_]), least = load(&layers.least[pixel_]);
+    DoubleMasks open = load_open();
+    MI open_lanes = Load(d, &state_.open[pixel_]) < Zero(d);
+    MI seen = Load(d, &state_.first_back[pixel_]) != Set(d, no_key);
+    const VI none = Set(d, -1);
+    VI last_row = none;
+    for (std::size_t row = 0; row < count; ++row) {
+      if (!light_.lit[row]) continue;
+      const std::size_t at = row * hn::Lanes(d);
+      const MI shows = And(open_lanes, RebindMask(d, Load(df, light_.optical_depth + at) > Zero(df)));
+      const RayLight before = ray;
+      ray.add(light_, at, IfThenElseZero(open, ray.transmittance));
+      const MI appears = AndNot(seen, shows);
+      if (!AllFalse(d, appears)) keep_first(appears, row);
+      seen = Or(seen, shows);
+      const MI ends = And(shows, lanes_of(end_at >= ray.transmittance) != Zero(d));
+      if (HWY_UNLIKELY(!AllFalse(d, ends))) {
+        keep_last(last_row, layers);
+        ray.save(state_, pixel_);
+        end_layers(ends, before, at, layers);
+        ray = RayLight(state_, pixel_);
+        end_at = load(&layers.end_at[pixel_]), least = load(&layers.least[pixel_]);
+        seen = Load(d, &state_.first_back[pixel_]) != Set(d, no_key);
+        last_row = none;
+      }
+      last_row = IfThenElse(AndNot(ends, shows), Set(d, static_cast<std::int32_t>(row)), last_row);
+      const DoubleMasks dark = AndNot(ray.transmittance >= least, open);
+      if (HWY_UNLIKELY(!all_false(dark))) {
+        open = AndNot(dark, open);
+        open_lanes = store_open(open) < Zero(d);
+      }
+    }
+    keep_last(last_row, layers);
+    ray.save(state_, pixel_);
+    return !AllFalse(d, open_lanes);
+  }
+
+  /// Lets `layers` add the segments at row position `at` of the lanes `ends`, whose light was `before`.
+  HWY_NOINLINE void end_layers(MI ends, const RayLight& before, std::size_t at, WindowLayers& layers) {
+    alignas(64) double red[most_lanes], green[most_lanes], blue[most_lanes], transmittance[most_lanes];
+    store(before.red, red), store(before.green, green), store(before.blue, blue);
+    store(before.transmittance, transmittance);
+    std::array<WindowLayers::End, most_lanes> found;
+    std::size_t count = 0;
+    for (unsigned left = lane_bits(ends); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+      const std::size_t p = pixel_ + lane, k = at + lane;
+      state_.red[p] = red[lane], state_.green[p] = green[lane], state_.blue[p] = blue[lane];
+      state_.transmittance[p] = transmittance[lane];
+      WindowLayers::End& end = found[count++];
+      end.pixel = static_cast<std::uint32_t>(p);
+      end.segment = {light_.front[k], light_.back[k], light_.scalar_front[k], light_.scalar_back[k]};
+      end.light = {};
+      if (state_.lit) end.light = {light_.own[k], light_.white[k]};
+    }
+    layers.add(std::span(found.data(), count));
+  }
+
+  /// Stores, in lanes with `row` >= 0, this row's segment as the last one that is visible.
+  HWY_INLINE void keep_last(VI row, WindowLayers& layers) {
+    const DI d;
+    const DF df;
+    const MI has = row > Set(d, -1);
+    if (AllFalse(d, has)) return;
+    const VI at = Max(row, Zero(d)) * Set(d, static_cast<std::int32_t>(hn::Lanes(d))) + Iota(d, 0);
+    const auto keep = [&](const auto dx, const auto* from, auto* to)
+                          HWY_ATTR { BlendedStore(GatherIndex(dx, from, at), RebindMask(dx, has), dx, to + pixel_); };
+    keep(d, light_.front, layers.last_front.data()), keep(d, light_.back, layers.last_back.data());
+    keep(df, light_.scalar_front, layers.last_scalar_front.data());
+    keep(df, light_.scalar_back, layers.last_scalar_back.data());
   }
 
   /// Returns the lanes whose run ends because the segment that they take does not touch the back of the run.

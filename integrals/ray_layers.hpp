@@ -70,6 +70,9 @@ class RayLayers {
   /// Ends the ray. Appends the last layer if the layer has any light or opacity.
   void end(OpenLayer& layer, std::vector<RayLayer>& ended) const;
 
+  /// Whether the layer is the last one, which does not end before the ray does.
+  [[nodiscard]] bool is_last(const OpenLayer& layer) const { return layer.number + 1 >= layers_; }
+
   /// Upper bound of the visibility of the rest of the ray. It is 1 before the last layer, because the light of a layer
   /// is not attenuated by earlier layers.
   [[nodiscard]] double transmittance(const OpenLayer& layer) const {
@@ -77,7 +80,6 @@ class RayLayers {
   }
 
  private:
-  [[nodiscard]] bool is_last(const OpenLayer& layer) const { return layer.number + 1 >= layers_; }
   [[nodiscard]] bool is_full(double optical_depth) const { return optical_depth >= enough_; }
   template <class Visit>
   void visit_pieces(const Stretch& stretch, const Visit& visit) const;

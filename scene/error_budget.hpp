@@ -63,6 +63,9 @@ constexpr double precise_pieces(double accuracy) { return accuracy / 2; }
 /// because the formulas do not include all errors.
 constexpr double casting_of_exact_grid = 2e-6;
 
+/// The accuracy that a frame on the integer lattice must have so that its layers have `accuracy` (layers_on_lattice()).
+constexpr double lattice_of_layers(double accuracy) { return accuracy * 2 / 3; }
+
 // Errors of deep images that are cut anywhere, for `deep_accuracy`: pieces, merged pieces, and the rounding of alpha.
 constexpr double deep_pieces(double accuracy) { return accuracy / 2; }
 constexpr double deep_merging(double accuracy) { return accuracy / 4; }
@@ -75,6 +78,11 @@ constexpr double mesh_on_lattice(double accuracy, double brightest = 1, bool sha
 }
 constexpr double exact_mesh_on_lattice(double brightest = 1, bool shaded = false) {
   return lattice_scalars_of_exact + brightest * (lane_integrals + (shaded ? lane_lights : 0) + float_picture);
+}
+/// The lattice changes the light of a layer, and moves the ends of the layer.
+constexpr double layers_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
+  return 2 * (lattice_scalars(lattice_of_layers(accuracy)) + brightest * (lane_integrals + (shaded ? lane_lights : 0))) +
+         brightest * float_picture;
 }
 constexpr double mesh_in_double(double accuracy, double brightest = 1) {
   return ended(accuracy) + thick_pieces(accuracy) + dark_pieces(accuracy) + brightest * float_picture;

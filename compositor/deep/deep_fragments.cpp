@@ -19,15 +19,16 @@ double alpha(double optical_depth) { return -std::expm1(-optical_depth); }
 }  // namespace
 
 bool DeepMerger::extend(const DeepSample& piece) {
-  const double attenuation = std::exp(-sample_.optical_depth), end = piece.back - sample_.front;
+  const double end = piece.back - sample_.front;
   const double joint = sample_.back - sample_.front;
   const double depth = sample_.optical_depth + piece.optical_depth;
   if (depth > most_depth_) return false;
   // The quantity in which light is linear: alpha or, if nothing absorbs, depth.
-  const double at_joint = absorbs_ ? alpha(sample_.optical_depth) : joint, at_end = absorbs_ ? alpha(depth) : end;
+  const double alpha_at_end = absorbs_ ? alpha(depth) : 0, attenuation = 1 - alpha_;
+  const double at_joint = absorbs_ ? alpha_ : joint, at_end = absorbs_ ? alpha_at_end : end;
   double slope_low = slope_low_, slope_high = slope_high_;
   if (absorbs_) {
-    const double width = std::log1p(transmittance_error_ * std::exp(last_depth_));
+    const double x = transmittance_error_ / (1 - last_alpha_), width = 2 * x / (2 + x);
     slope_low = std::max(slope_low, (sample_.optical_depth - width) / joint);
     slope_high = std::min(slope_high, (sample_.optical_depth + width) / joint);
     if (!(depth / end >= slope_low && depth / end <= slope_high)) return false;
@@ -38,9 +39,13 @@ bool DeepMerger::extend(const DeepSample& piece) {
     low[c] = std::max(low[c], (sample_.light[c] - light_error_) / at_joint);
     high[c] = std::min(high[c], (sample_.light[c] + light_error_) / at_joint);
     if (!(light[c] / at_end >= low[c] && light[c] / at_end <= high[c])) return false;
-    if (absorbs_ && piece.light[c] > most_ratio_ * alpha(piece.optical_depth)) return false;
   }
-  last_depth_ = sample_.optical_depth;
+  if (absorbs_) {
+    const double most_light = most_ratio_ * alpha(piece.optical_depth);
+    if (piece.light[0] > most_light || piece.light[1] > most_light || piece.light[2] > most_light) return false;
+  }
+  last_alpha_ = alpha_;
+  alpha_ = alpha_at_end;
   sample_.back = piece.back;
   sample_.light = light;
   sample_.optical_depth = depth;
@@ -60,9 +65,10 @@ void DeepMerger::add(const DeepSample& given, std::vector<DeepSample>& samples, 
     begun_ = true;
     absorbs_ = absorbs;
     sample_ = piece;
-    last_depth_ = 0;
+    last_alpha_ = 0;
+    alpha_ = absorbs ? alpha(piece.optical_depth) : 0;
     light_error_ = scene::error_budget::deep_merging(accuracy_) / std::max(transmittance_, 1e-300);
-    most_ratio_ = absorbs ? std::max(1.0, 2 * most_light / alpha(piece.optical_depth)) : 0;
+    most_ratio_ = absorbs ? std::max(1.0, 2 * most_light / alpha_) : 0;
     most_depth_ = most_optical_depth(accuracy_, transmittance_, most_ratio_);
     transmittance_error_ = light_error_ / (1 + most_ratio_);
     slope_low_ = 0, slope_high_ = std::numeric_limits<double>::infinity();

@@ -24,7 +24,8 @@ struct DeepSample {
 ///   |t_k - s (z_k - z0)| <= w_k    and    |L_k - S alpha(t_k)| <= e_light  in each channel.
 /// Every joint narrows the two intervals of allowed s and S; a piece is added to the sample if the resulting s and S
 /// are in them. Within a piece, the logarithms of both transmittances are linear in z, so they differ most at a joint;
-/// with w_k = log1p(e_T / T_(k-1)), the transmittances differ by at most e_T on both sides of the joint. Within a
+/// with w_k = log1p(e_T / T_(k-1)), the transmittances differ by at most e_T on both sides of the joint (2 x / (2 + x)
+/// is a lower bound of log1p(x)). Within a
 /// piece, light is linear in the alpha of the piece, so L - S alpha is largest at a joint, too, and |S alpha - S
 /// alpha'| <= S e_T. The error of a cut is at most T_before (e_light + (1 + S) e_T), plus the pieces' own half: e_light
 /// = accuracy / (4 T_before) and e_T = e_light / (1 + S_most). The sample ends before a piece with more light per alpha
@@ -55,7 +56,7 @@ class DeepMerger {
   double transmittance_ = 1;  ///< transmittance behind the last piece
   bool begun_ = false, absorbs_ = false;
   DeepSample sample_{};
-  double last_depth_ = 0;  ///< optical depth of the sample before its last piece
+  double alpha_ = 0, last_alpha_ = 0;  ///< alpha of the sample, and of the sample before its last piece
   double light_error_ = 0, transmittance_error_ = 0, most_ratio_ = 0, most_depth_ = 0;
   double slope_low_ = 0, slope_high_ = 0;
   std::array<double, 3> light_low_{}, light_high_{};

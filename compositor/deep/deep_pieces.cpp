@@ -57,7 +57,8 @@ void PieceCutter::cut_linear(const DeepPiece& stretch, const Optics& a, const Op
   while (x < 1) {
     const double allowed = scene::error_budget::deep_pieces(accuracy_) / std::max(transmittance, 1e-300);
     double step = 1 - x;
-    if (hidden > allowed) {
+    const bool is_thin = std::max(a.extinction, b.extinction) * length <= 1 && (!independent_ || bend <= 1);
+    if (hidden > allowed && !(is_thin && steepness <= allowed)) {
       double h = steepness > 0 ? std::sqrt(allowed / steepness) : 1;
       if (independent_ && bend > 0) h = std::min(h, 1 / std::sqrt(bend));  // d <= 1
       // The optical depth of the fraction h is length (k h + rise h^2 / 2); if the extinction decreases, the first term

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "compositor/finite_float.hpp"
-#include "compositor/picture_sink.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -39,7 +38,6 @@ void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepIma
 DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
                    scene::Emission emission, double accuracy, DeepTarget& collector)
     : scene_(scene),
-      picture_(scene, false),
       window_(window),
       cutter_(scene.light != nullptr ? projection::brightest(scene.light->shading(), function) : function, emission,
               accuracy),
@@ -49,13 +47,12 @@ DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scen
 void DeepSink::start(const scene::PixelRect& rect) {
   rect_ = rect;
   segments_here_ = 0;
-  picture_.start(rect);
   const auto n = static_cast<std::size_t>(rect.area());
   mergers_.assign(n, DeepMerger(accuracy_));
   transmittance_before_.assign(n, 1.0);
+  rays_.assign(n, {});
   open_.assign(n, 1);
-  deep_open_.assign(n, 1);
-  deep_open_count_ = n;
+  open_count_ = n;
   length_per_depth_.resize(n);
   std::size_t i = 0;
   for (int y = rect.y0; y < rect.y1; ++y)
@@ -64,10 +61,11 @@ void DeepSink::start(const scene::PixelRect& rect) {
 }
 
 void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::StageTimer& timer) {
-  picture_.composite(lists, final_depth, timer);
+  lists.sort();
+  timer.record("sort");
   const projection::RaySegments& segments = lists.segments;
-  for (std::uint32_t p = 0; p < deep_open_.size(); ++p) {
-    if (!deep_open_[p]) continue;
+  for (std::uint32_t p = 0; p < open_.size(); ++p) {
+    if (!open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
       if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
@@ -83,8 +81,6 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
     }
   }
   integrate_pieces(timer);
-  for (std::size_t p = 0; p < open_.size(); ++p)
-    open_[p] = static_cast<std::uint8_t>(picture_.open()[p] | deep_open_[p]);
   segments_here_ += lists.remove(final_depth, open_);
   timer.record("composite");
 }
@@ -125,16 +121,23 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
     const std::uint32_t p = piece_pixels_[k];
     const bool surface = next != crossings_.end() && next->at == k;
     if (surface) ++next;
-    if (!deep_open_[p]) continue;
+    if (!open_[p]) continue;
     DeepMerger& merger = mergers_[p];
+    Ray& ray = rays_[p];
+    if (ray.optical_depth == 0 && pieces_[k].optical_depth > 0) ray.depth = pieces_[k].front;
+    const double through = merger.transmittance();
+    ray.red += through * batch_.red[k];
+    ray.green += through * batch_.green[k];
+    ray.blue += through * batch_.blue[k];
+    ray.optical_depth += pieces_[k].optical_depth;
     ended_.clear();
     merger.add(
         {pieces_[k].front, pieces_[k].back, {batch_.red[k], batch_.green[k], batch_.blue[k]}, pieces_[k].optical_depth},
         ended_, surface);
     for (const DeepSample& sample : ended_) samples_.push_back({p, sample});
     if (merger.transmittance() * scene_.left_out_per_transmittance < scene_.integrator->termination_error()) {
-      deep_open_[p] = 0;
-      --deep_open_count_;
+      open_[p] = 0;
+      --open_count_;
     }
   }
   pieces_.clear();
@@ -145,8 +148,12 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
 
 void DeepSink::finish() {
   segments_ += segments_here_;
-  write_pixels(picture_, rect_, window_);
   const auto n = static_cast<std::uint32_t>(rect_.area());
+  for (std::uint32_t p = 0; p < n; ++p) {
+    const Ray& ray = rays_[p];
+    const auto x = static_cast<int>(p) % rect_.width(), y = static_cast<int>(p) / rect_.width();
+    window_.put(rect_.x0 + x, rect_.y0 + y, {ray.red, ray.green, ray.blue, -std::expm1(-ray.optical_depth), ray.depth});
+  }
   for (std::uint32_t p = 0; p < n; ++p) {
     ended_.clear();
     mergers_[p].end(ended_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,10 +15,8 @@
 
 namespace tessera::compositor {
 
-/// Computes an image and, in addition, deep samples: cuts a tile's ray segments into pieces, integrates the pieces, and
-/// merges them. The integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels are
-/// closed by the same rule as those of the image, but by their own sums; a pixel is open as long as either of the two
-/// is.
+/// Computes deep samples and the image: cuts a tile's ray segments into pieces, integrates the pieces, and merges them.
+/// The integrator must be `exact`, so that the light of a segment is that of its pieces.
 class DeepSink final : public TileSink<DoubleEncoding> {
  public:
   /// The values of `scene`, the window's image and `collector` must outlive this object. Threads share `collector`.
@@ -28,19 +27,20 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   void take(Store& lists, double final_depth, std::size_t at_least, scene::StageTimer& timer) override;
   bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
   [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
-  [[nodiscard]] bool any_open() const override { return picture_.any_open() || deep_open_count_ > 0; }
+  [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
   void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
-  /// Working memory per pixel of the tile, in bytes.
-  static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
-
  private:
+  /// The part of a pixel's image that has been computed so far.
+  struct Ray {
+    double red = 0, green = 0, blue = 0, optical_depth = 0, depth = std::numeric_limits<double>::infinity();
+  };
+
   void integrate_pieces(scene::StageTimer& timer);
   void add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value);
 
   TileScene scene_;
-  TilePixels<DoubleEncoding> picture_;
   ImageWindow window_;
   PieceCutter cutter_;
   double accuracy_;
@@ -49,8 +49,9 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
   std::vector<DeepMerger> mergers_;                 ///< one per pixel
   std::vector<double> transmittance_before_, length_per_depth_;
-  std::vector<std::uint8_t> open_, deep_open_;
-  std::size_t deep_open_count_ = 0;
+  std::vector<Ray> rays_;  ///< one per pixel
+  std::vector<std::uint8_t> open_;
+  std::size_t open_count_ = 0;
   std::vector<DeepPiece> pieces_;  ///< pieces that wait to be integrated
   std::vector<std::uint32_t> piece_pixels_;
   std::vector<std::uint32_t> piece_tets_;   ///< the tet of each piece; only if matter is lit

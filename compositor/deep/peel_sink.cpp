@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "compositor/finite_float.hpp"
-#include "compositor/picture_sink.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -23,10 +23,34 @@ void append_layers(std::span<const integrals::RayLayer> layers, std::vector<scen
                   static_cast<float>(-std::expm1(-l.optical_depth))});
 }
 
+void deliver_layers(const scene::PixelRect& rect, std::vector<PixelLayer>& layers, const ImageWindow& window,
+                    DeepTarget& target) {
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const PixelLayer& a, const PixelLayer& b) { return a.pixel < b.pixel; });
+  std::vector<std::uint32_t> counts(static_cast<std::size_t>(rect.area()), 0);
+  std::vector<scene::DeepImageSample> samples;
+  auto next = layers.cbegin();
+  std::uint32_t p = 0;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    for (int x = rect.x0; x < rect.x1; ++x, ++p) {
+      double red = 0, green = 0, blue = 0, optical_depth = 0;
+      double depth = std::numeric_limits<double>::infinity();
+      for (; next != layers.cend() && next->pixel == p; ++next, ++counts[p]) {
+        const integrals::RayLayer& layer = next->layer;
+        const double through = std::exp(-optical_depth);
+        red += through * layer.red, green += through * layer.green, blue += through * layer.blue;
+        if (optical_depth == 0 && layer.optical_depth > 0) depth = layer.front;
+        optical_depth += layer.optical_depth;
+        append_layers(std::span(&layer, 1), samples);
+      }
+      window.put(x, y, {red, green, blue, -std::expm1(-optical_depth), depth});
+    }
+  target.add(rect, std::move(counts), std::move(samples));
+}
+
 PeelSink::PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
                    scene::Emission emission, const Peel& peel, DeepTarget& target)
     : scene_(scene),
-      picture_(scene, false),
       window_(window),
       layers_(function, emission, peel, scene.integrator->termination_error() > 0),
       target_(&target) {}
@@ -34,12 +58,10 @@ PeelSink::PeelSink(const TileScene& scene, const ImageWindow& window, const scen
 void PeelSink::start(const scene::PixelRect& rect) {
   rect_ = rect;
   segments_here_ = 0;
-  picture_.start(rect);
   const auto n = static_cast<std::size_t>(rect.area());
   rays_.assign(n, {});
   open_.assign(n, 1);
-  layers_open_.assign(n, 1);
-  layers_open_count_ = n;
+  open_count_ = n;
   length_per_depth_.resize(n);
   std::size_t i = 0;
   for (int y = rect.y0; y < rect.y1; ++y)
@@ -53,10 +75,11 @@ bool PeelSink::is_crossing(const Waiting& w) const {
 }
 
 void PeelSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::StageTimer& timer) {
-  picture_.composite(lists, final_depth, timer);
+  lists.sort();
+  timer.record("sort");
   const projection::RaySegments& segments = lists.segments;
-  for (std::uint32_t p = 0; p < layers_open_.size(); ++p) {
-    if (!layers_open_[p]) continue;
+  for (std::uint32_t p = 0; p < open_.size(); ++p) {
+    if (!open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
       if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
@@ -67,8 +90,6 @@ void PeelSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
     }
   }
   integrate_waiting(timer);
-  for (std::size_t p = 0; p < open_.size(); ++p)
-    open_[p] = static_cast<std::uint8_t>(picture_.open()[p] | layers_open_[p]);
   segments_here_ += lists.remove(final_depth, open_);
   timer.record("composite");
 }
@@ -87,7 +108,7 @@ void PeelSink::integrate_waiting(scene::StageTimer& timer) {
   layers_.integrator().integrate(batch_);
   timer.record("integrate");
   for (std::size_t k = 0; k < waiting_.size(); ++k)
-    if (layers_open_[waiting_[k].pixel]) add(k);
+    if (open_[waiting_[k].pixel]) add(k);
   waiting_.clear();
 }
 
@@ -112,29 +133,20 @@ void PeelSink::add(std::size_t k) {
   }
   for (const integrals::RayLayer& layer : ended_) made_.push_back({w.pixel, layer});
   if (layers_.transmittance(ray) * scene_.left_out_per_transmittance < layers_.integrator().termination_error()) {
-    layers_open_[w.pixel] = 0;
-    --layers_open_count_;
+    open_[w.pixel] = 0;
+    --open_count_;
   }
 }
 
 void PeelSink::finish() {
   segments_ += segments_here_;
-  write_pixels(picture_, rect_, window_);
   const auto n = static_cast<std::uint32_t>(rect_.area());
   for (std::uint32_t p = 0; p < n; ++p) {
     ended_.clear();
     layers_.end(rays_[p], ended_);
     for (const integrals::RayLayer& layer : ended_) made_.push_back({p, layer});
   }
-  std::stable_sort(made_.begin(), made_.end(),
-                   [](const PixelLayer& a, const PixelLayer& b) { return a.pixel < b.pixel; });
-  std::vector<std::uint32_t> counts(n, 0);
-  std::vector<scene::DeepImageSample> samples;
-  for (const PixelLayer& made : made_) {
-    append_layers(std::span(&made.layer, 1), samples);
-    ++counts[made.pixel];
-  }
-  target_->add(rect_, std::move(counts), std::move(samples));
+  deliver_layers(rect_, made_, window_, *target_);
 }
 
 }  // namespace tessera::compositor

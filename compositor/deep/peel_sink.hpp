@@ -5,15 +5,21 @@
 #include <vector>
 
 #include "compositor/deep/deep_collector.hpp"
-#include "compositor/tile_pixels.hpp"
+#include "compositor/tile_scene.hpp"
 #include "compositor/tile_sink.hpp"
 #include "integrals/ray_layers.hpp"
 #include "integrals/segment_batch.hpp"
 
 namespace tessera::compositor {
 
-/// Computes an image and, in addition, its layers (integrals/ray_layers.hpp), which are stored as deep samples: the
-/// first sample of a pixel is its first layer, and so on to the end of the ray. append_layers() makes the samples.
+/// A layer of the pixel with this number in a rectangle.
+struct PixelLayer {
+  std::uint32_t pixel;
+  integrals::RayLayer layer;
+};
+
+/// Computes the layers of an image (integrals/ray_layers.hpp), and the image from the layers. Layers are stored as deep
+/// samples: the first sample of a pixel is its first layer, and so on to the end of the ray.
 ///
 /// A pixel whose image is opaque still accepts segments until its last layer is opaque as well.
 class PeelSink final : public TileSink<DoubleEncoding> {
@@ -26,7 +32,7 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   void take(Store& lists, double final_depth, std::size_t at_least, scene::StageTimer& timer) override;
   bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
   [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
-  [[nodiscard]] bool any_open() const override { return picture_.any_open() || layers_open_count_ > 0; }
+  [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
   void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
@@ -36,17 +42,11 @@ class PeelSink final : public TileSink<DoubleEncoding> {
     std::uint32_t pixel, tet;
     double front, back, scalar_front, scalar_back;
   };
-  struct PixelLayer {
-    std::uint32_t pixel;
-    integrals::RayLayer layer;
-  };
-
   void integrate_waiting(scene::StageTimer& timer);
   void add(std::size_t k);
   [[nodiscard]] bool is_crossing(const Waiting& w) const;
 
   TileScene scene_;
-  TilePixels<DoubleEncoding> picture_;
   ImageWindow window_;
   integrals::RayLayers layers_;
   DeepTarget* target_;
@@ -54,13 +54,18 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
   std::vector<integrals::OpenLayer> rays_;          ///< one per pixel
   std::vector<double> length_per_depth_;
-  std::vector<std::uint8_t> open_, layers_open_;
-  std::size_t layers_open_count_ = 0;
+  std::vector<std::uint8_t> open_;
+  std::size_t open_count_ = 0;
   std::vector<Waiting> waiting_;  ///< segments of all pixels; those of one pixel are in order
   integrals::SegmentBatch batch_;
   std::vector<integrals::RayLayer> ended_;
   std::vector<PixelLayer> made_;  ///< layers of all pixels; those of one pixel are in order
 };
+
+/// Composites layers to the pixels of `rect` in the window's image, and passes them to `target`. Sorts `layers` by
+/// pixel; those of one pixel must be in order.
+void deliver_layers(const scene::PixelRect& rect, std::vector<PixelLayer>& layers, const ImageWindow& window,
+                    DeepTarget& target);
 
 /// Appends the layers of one pixel as deep samples with rounded depths. In contrast to other deep images, two samples
 /// may be points at the same depth.

@@ -147,6 +147,23 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
   return magnify(scalars, {low, high}, pieces, most_error, transfer_function);
 }
 
+std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                       const std::array<double, 2>& scalar_range,
+                                       const scene::TransferFunction& function, const Settings& settings,
+                                       const FrameSettings& frame) {
+  if (!frame.by_depth()) return lattice_of(space, box, scalar_range, function, settings);
+  scene::Integrator method = settings.integrator;
+  const bool exact = method.kind == IntegratorKind::exact || method.kind == IntegratorKind::automatic;
+  if (!frame.peel || settings.emission == Emission::independent || !settings.surfaces.empty() || !exact)
+    return std::nullopt;
+  const double accuracy =
+      method.kind == IntegratorKind::automatic ? std::min(method.accuracy, budget::exact_layers) : budget::exact_layers;
+  Settings layered = settings;
+  layered.integrator.kind = IntegratorKind::automatic;
+  layered.integrator.accuracy = budget::lattice_of_layers(accuracy);
+  return lattice_of(space, box, scalar_range, function, layered);
+}
+
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
                                         const scene::TransferFunction& function, scene::Emission emission,
                                         double longest_ray) {

@@ -32,6 +32,13 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings);
 
+/// Same as lattice_of() for a frame with these settings. Returns nothing for deep images, and for layers of independent
+/// emission or with surfaces (compositor/deep/layer_sink.hpp).
+std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                       const std::array<double, 2>& scalar_range,
+                                       const scene::TransferFunction& function, const Settings& settings,
+                                       const FrameSettings& frame);
+
 /// Returns the limits by which single cells need double precision on this lattice. `longest_ray` is an upper bound of a
 /// ray's length in the whole mesh, world units.
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,

@@ -7,6 +7,7 @@
 
 #include "compositor/deep/deep_collector.hpp"
 #include "compositor/deep/deep_sink.hpp"
+#include "compositor/deep/layer_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
 #include "compositor/picture_sink.hpp"
 #include "frame/mesh/boundary_faces.hpp"
@@ -101,9 +102,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     return std::make_unique<compositor::DeepSink>(scene, window, transfer_function, settings.emission,
                                                   frame.deep_accuracy, *collector);
   };
+  FrameSettings by_depth;
+  if (collector) by_depth.deep = true, by_depth.peel = frame.peel;
   const std::optional<FrameLattice> lattice =
-      collector ? std::nullopt
-                : lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings);
+      lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings, by_depth);
+  const auto sink_on_lattice = [&]() -> std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> {
+    if (!collector) return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window);
+    return std::make_unique<compositor::LayerSink>(scene, window, lattice->function, *frame.peel, *collector);
+  };
   std::optional<integrals::LaneTable> table;
   if (lattice) {
     table.emplace(lattice->function, lattice->lattice, settings.emission);
@@ -111,22 +117,22 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     scene.table = &*table;
     scene.lattice = lattice->lattice;
   }
-  FrameStatistics counted = state_->projector.project(
-      {.space = &space,
-       .grid = {size, settings.mesh.tile_size},
-       .function = &transfer_function,
-       .surfaces = &surfaces,
-       .faces = faces,
-       .lattice = lattice ? &lattice->lattice : nullptr,
-       .magnified = lattice ? std::span<const scene::MagnifiedRange>(lattice->magnified)
-                            : std::span<const scene::MagnifiedRange>(),
-       .light = light ? &*light : nullptr,
-       .watch = watch},
-      {.in_double = sink_in_double,
-       .on_lattice = [&] { return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window); },
-       .kept_bytes = collector ? settings.memory_bytes / 2 : 0,
-       .image = &image,
-       .prepare = [&] { image = scene::Image(size); }});  // new pages are slow to fill
+  FrameStatistics counted =
+      state_->projector.project({.space = &space,
+                                 .grid = {size, settings.mesh.tile_size},
+                                 .function = &transfer_function,
+                                 .surfaces = &surfaces,
+                                 .faces = faces,
+                                 .lattice = lattice ? &lattice->lattice : nullptr,
+                                 .magnified = lattice ? std::span<const scene::MagnifiedRange>(lattice->magnified)
+                                                      : std::span<const scene::MagnifiedRange>(),
+                                 .light = light ? &*light : nullptr,
+                                 .watch = watch},
+                                {.in_double = sink_in_double,
+                                 .on_lattice = sink_on_lattice,
+                                 .kept_bytes = collector ? settings.memory_bytes / 2 : 0,
+                                 .image = &image,
+                                 .prepare = [&] { image = scene::Image(size); }});  // new pages are slow to fill
   counted.instruction_set = projection::instruction_set();
   counted.integrator = integrator.name();
   if (collector) {

@@ -149,7 +149,8 @@ class CompositorLoop {
         reader.finish();
         if (begin.stopped != 0) to.stopped = true;
         if (begin.on_lattice != 0 && !to.lattice) {
-          to.lattice = lattice_of(to.space, begin.box, begin.scalar_range, run_.function, run_.settings.render);
+          to.lattice = lattice_of(to.space, begin.box, begin.scalar_range, run_.function, run_.settings.render,
+                                  run_.settings.frame);
           if (!to.lattice)
             throw scene::Error(scene::ErrorCode::system_failure,
                                "exchange: a projector has a lattice and this compositor has none; give all ranks the "
@@ -234,7 +235,7 @@ class CompositorLoop {
     const Settings& render = run_.settings.render;
     compositor::MergeContext context{
         &of.space, &of.integrator, run_.function.max_color(), longest_ray, longest_edge, render.emission, budget_.tile};
-    context.function = &run_.function;
+    context.function = of.lattice ? &of.lattice->function : &run_.function;
     context.deep_accuracy = run_.settings.frame.by_depth() ? run_.settings.frame.deep_accuracy : 0;
     context.peel = run_.settings.frame.peel;
     context.lattice = run_.device.device != nullptr ? &of.units : of.lattice ? &of.lattice->lattice : nullptr;

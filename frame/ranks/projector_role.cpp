@@ -77,8 +77,8 @@ class FrameSinks {
     if (light_) scene_.light = &*light_, scene_.normals = &normals_;
     // Runs of several ranks end at the triangles of other ranks only in double precision (FaceMarks).
     const bool runs_end_at_faces = settings_.render.surfaces.has_faces() && settings_.exchange == Exchange::runs;
-    if (!settings_.frame.by_depth() && (!runs_end_at_faces || makes_pixels_))
-      lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
+    if (!runs_end_at_faces || makes_pixels_)
+      lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render, settings_.frame);
     if (!lattice_) return;
     table_.emplace(lattice_->function, lattice_->lattice, settings_.render.emission);
     surfaces_.place_on(lattice_->lattice);

@@ -127,6 +127,22 @@ TEST(Peel, LayersOfMeshesMatchTheReference) {
   }
 }
 
+// Only some cells need double precision, even if matter is lit or a function is steep.
+TEST(Peel, LayersOfMeshesAreMadeOnTheLattice) {
+  const Dataset data = Dataset::of(datasets::arrays_of(tests::with_field(datasets::cube(8), waves)));
+  const View view = view_of(ProjectionKind::perspective);
+  const TransferFunction steep({{0, {0.9, 0.2, 0.1}, 0.1}, {1e-9, {0.1, 0.2, 0.9}, 3}, {1, {0.2, 0.9, 0.5}, 6}});
+  for (const TransferFunction& function : {datasets::benchmark_transfer_function(), steep})
+    for (const bool shaded : {false, true}) {
+      Settings settings = exact();
+      if (shaded) settings.mesh.shading.emplace();
+      expect_the_reference(data, settings, view, function, 0.3, 4);
+      const FrameCounters made = Session(data, settings).render(view, function, peeled(0.3, 4)).statistics.mesh;
+      EXPECT_LT(made.segments_in_double_precision, made.segments / 2) << shaded;
+      EXPECT_GT(made.segments, 0u);
+    }
+}
+
 TEST(Peel, LayersOfGridsMatchTheReference) {
   test::SomeCases some(3);
   for (const auto association : {Association::point, Association::cell})

@@ -19,6 +19,13 @@ TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
     EXPECT_LE(budget::mesh_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::grid_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::deep(accuracy), accuracy) << accuracy;
+    const double of_layers = budget::lattice_of_layers(accuracy);
+    for (const double brightest : {1.0, 1.3, 4.0})
+      for (const bool shaded : {false, true}) {
+        if (budget::mesh_on_lattice(of_layers, brightest, shaded) <= of_layers) {
+          EXPECT_LE(budget::layers_on_lattice(accuracy, brightest, shaded), accuracy) << accuracy;
+        }
+      }
     for (const bool shaded : {false, true}) {
       const double lattice = budget::mesh_on_lattice(accuracy, 1, shaded);
       const double mesh = lattice <= accuracy ? lattice : budget::mesh_in_double(accuracy);

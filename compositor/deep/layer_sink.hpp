@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compositor/deep/deep_collector.hpp"
+#include "compositor/deep/peel_sink.hpp"
+#include "compositor/tile_scene.hpp"
+#include "compositor/tile_sink.hpp"
+#include "compositor/window_kernel.hpp"
+#include "integrals/ray_layers.hpp"
+#include "integrals/segment_batch.hpp"
+
+namespace tessera::compositor {
+
+/// PeelSink on the lattice, for absorption without surfaces. Segments are composited in lanes; only the segments in
+/// which a layer ends, and the ends of rays, are in double precision.
+class LayerSink final : public TileSink<LatticeEncoding>, private WindowLayers {
+ public:
+  /// `function` is the transfer function on the lattice (FrameLattice::function). The values of `scene`, the window's
+  /// image and `target` must outlive this object. Threads share `target`.
+  LayerSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
+            const Peel& peel, DeepTarget& target);
+
+  void start(const scene::PixelRect& rect) override;
+  void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) override;
+  bool take_unordered(Store&, Depth, scene::StageTimer&) override { return false; }
+  [[nodiscard]] const LatticeEncoding::Open& open() const override { return open_; }
+  [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
+  void finish() override;
+  [[nodiscard]] std::uint64_t segments() const override { return segments_; }
+
+ private:
+  void add(std::span<const End> ends) override;
+  [[nodiscard]] integrals::OpenLayer layer_of(std::size_t pixel) const;
+  void resume(std::size_t pixel, const integrals::OpenLayer& layer);
+  void note_ended(std::uint32_t pixel);
+
+  TileScene scene_;
+  ImageWindow window_;
+  integrals::RayLayers layers_;
+  double end_transmittance_;
+  WindowRules rules_;
+  DeepTarget* target_;
+  scene::PixelRect rect_{0, 0, 0, 0};
+  projection::OpenPixels open_{};
+  int open_count_ = 0;
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
+  WindowState state_;
+  /// The layer of each pixel after its last cut. What the lanes have added since then is in `state_`.
+  std::vector<integrals::OpenLayer> cut_;
+  std::vector<double> length_per_depth_;
+  integrals::SegmentBatch batch_;
+  std::vector<integrals::RayLayer> ended_;
+  std::vector<PixelLayer> made_;  ///< layers of all pixels; those of one pixel are in order
+};
+
+}  // namespace tessera::compositor
