@@ -362,8 +362,7 @@ class GroupLight {
     DoubleMasks open = load_open();
     MI open_lanes = Load(d, &state_.open[pixel_]) < Zero(d);
     MI seen = Load(d, &state_.first_back[pixel_]) != Set(d, no_key);
-    const VI none = Set(d, -1);
-    VI last_row = none;
+    VI last_row = Set(d, -1);
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
       const std::size_t at = row * hn::Lanes(d);
@@ -381,7 +380,7 @@ class GroupLight {
         ray = RayLight(state_, pixel_);
         end_at = load(&layers.end_at[pixel_]), least = load(&layers.least[pixel_]);
         seen = Load(d, &state_.first_back[pixel_]) != Set(d, no_key);
-        last_row = none;
+        last_row = Set(d, -1);
       }
       last_row = IfThenElse(AndNot(ends, shows), Set(d, static_cast<std::int32_t>(row)), last_row);
       const DoubleMasks dark = AndNot(ray.transmittance >= least, open);
@@ -403,15 +402,12 @@ class GroupLight {
     std::array<WindowLayers::End, most_lanes> found;
     std::size_t count = 0;
     for (unsigned left = lane_bits(ends); left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
-      const std::size_t p = pixel_ + lane, k = at + lane;
+      const std::size_t lane = __builtin_ctz(left), p = pixel_ + lane, k = at + lane;
       state_.red[p] = red[lane], state_.green[p] = green[lane], state_.blue[p] = blue[lane];
       state_.transmittance[p] = transmittance[lane];
-      WindowLayers::End& end = found[count++];
-      end.pixel = static_cast<std::uint32_t>(p);
-      end.segment = {light_.front[k], light_.back[k], light_.scalar_front[k], light_.scalar_back[k]};
-      end.light = {};
-      if (state_.lit) end.light = {light_.own[k], light_.white[k]};
+      found[count++] = {static_cast<std::uint32_t>(p),
+                        {light_.front[k], light_.back[k], light_.scalar_front[k], light_.scalar_back[k]},
+                        {state_.lit ? light_.own[k] : 1, state_.lit ? light_.white[k] : 0}};
     }
     layers.add(std::span(found.data(), count));
   }
@@ -421,7 +417,6 @@ class GroupLight {
     const DI d;
     const DF df;
     const MI has = row > Set(d, -1);
-    if (AllFalse(d, has)) return;
     const VI at = Max(row, Zero(d)) * Set(d, static_cast<std::int32_t>(hn::Lanes(d))) + Iota(d, 0);
     const auto keep = [&](const auto dx, const auto* from, auto* to)
                           HWY_ATTR { BlendedStore(GatherIndex(dx, from, at), RebindMask(dx, has), dx, to + pixel_); };

@@ -81,7 +81,8 @@ constexpr double exact_mesh_on_lattice(double brightest = 1, bool shaded = false
 }
 /// The lattice changes the light of a layer, and moves the ends of the layer.
 constexpr double layers_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
-  return 2 * (lattice_scalars(lattice_of_layers(accuracy)) + brightest * (lane_integrals + (shaded ? lane_lights : 0))) +
+  return 2 * (lattice_scalars(lattice_of_layers(accuracy)) +
+              brightest * (lane_integrals + (shaded ? lane_lights : 0))) +
          brightest * float_picture;
 }
 constexpr double mesh_in_double(double accuracy, double brightest = 1) {
