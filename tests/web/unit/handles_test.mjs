@@ -11,7 +11,7 @@ test("of two points that overlap a press takes the nearer one, whichever was dra
   assert.equal(taken(100, 50), "opacity-0");
   assert.equal(taken(102, 52), "opacity-0");
   assert.equal(taken(104, 50), "opacity-1");
-  assert.equal(taken(106, 50, points.toReversed()), "opacity-1");
+  assert.equal(taken(106, 50, [...points].reverse()), "opacity-1");
 });
 
 test("nothing is taken from beyond its reach", () => {
