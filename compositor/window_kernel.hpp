@@ -74,10 +74,13 @@ double first_visible_depth(const scene::Lattice& lattice, const projection::Latt
                            const class integrals::SegmentIntegrator& integrator);
 
 /// The layers of the pixels of a square (integrals/ray_layers.hpp). The state of a pixel is the light of its current
-/// layer. Where a segment brings the transmittance to the layer's end, the segment is cut in double precision.
+/// layer. Segments that bring the transmittance to the layer's end, and thick ones, are added in double precision.
 class WindowLayers {
  public:
-  /// A segment in which a layer of a pixel may end.
+  /// Before the last layer, lanes do not add segments with more alpha (compositor/deep/layer_sink.hpp).
+  static constexpr float most_alpha = 0.5f;
+
+  /// A segment that lanes do not add.
   struct End {
     std::uint32_t pixel;
     projection::LatticeSegment segment;

@@ -42,8 +42,7 @@ constexpr std::int32_t no_key = WindowState::not_yet;  // greater than all keys
 /// Returns -1 in lanes where the mask is set, and 0 in others.
 HWY_INLINE VI lanes_of(DoubleMasks mask) { return ConvertTo(DI(), demote(IfThenElseZero(mask, doubles(-1)))); }
 
-/// The light that leaves the segments of a block of rows. A row has one segment per pixel; its values are at [row *
-/// lanes + lane].
+/// The light that leaves the segments of a block of rows. A row has one segment per pixel, at [row * lanes + lane].
 struct LightRows {
   static constexpr std::size_t most = 32, numbers = most * most_lanes;
   alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
@@ -231,8 +230,7 @@ class GroupLight {
   /// Adds the first `count` rows. Returns whether some pixel stays open.
   HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
     if (!rules.runs) return rules.layers == nullptr ? add_touching<false>(count, rules) : add_layers(count, rules);
-    // In most cases, no run ends between the rows. The rows are then added in the same way as for an image. Independent
-    // emission also ends runs.
+    // Usually no run ends between the rows, and they are added as for an image. Independent emission also ends runs.
     if (light_.touching && !independent_) return add_touching<true>(count, rules);
     return rules.least_transmittance > 0 ? add_to_runs<true>(count, rules) : add_to_runs<false>(count, rules);
   }
@@ -248,8 +246,7 @@ class GroupLight {
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
       ray.add(light_, row * hn::Lanes(DF()), IfThenElseZero(open, ray.transmittance));
-      // This is decided after each segment, not after each window: where a ray ends must not depend on how its segments
-      // were divided into windows.
+      // Decided after each segment: where a ray ends must not depend on how its segments were divided into windows.
       open = And(open, ray.transmittance >= least);
     }
     ray.save(state_, pixel_);
@@ -372,7 +369,10 @@ class GroupLight {
       const MI appears = AndNot(seen, shows);
       if (!AllFalse(d, appears)) keep_first(appears, row);
       seen = Or(seen, shows);
-      const MI ends = And(shows, lanes_of(end_at >= ray.transmittance) != Zero(d));
+      const MF is_thick = Load(df, light_.alpha + at) > Set(df, WindowLayers::most_alpha);
+      MI ends = And(shows, lanes_of(end_at >= ray.transmittance) != Zero(d));
+      if (HWY_UNLIKELY(!AllFalse(df, is_thick)))
+        ends = Or(ends, And(And(shows, RebindMask(d, is_thick)), lanes_of(end_at >= doubles(0)) != Zero(d)));
       if (HWY_UNLIKELY(!AllFalse(d, ends))) {
         keep_last(last_row, layers);
         ray.save(state_, pixel_);

@@ -63,8 +63,14 @@ constexpr double precise_pieces(double accuracy) { return accuracy / 2; }
 /// because the formulas do not include all errors.
 constexpr double casting_of_exact_grid = 2e-6;
 
-/// The accuracy that a frame on the integer lattice must have so that its layers have `accuracy` (layers_on_lattice()).
-constexpr double lattice_of_layers(double accuracy) { return accuracy * 2 / 3; }
+/// Layers (Peel) on the integer lattice: what the rounding of scalars may change in a pixel, if the accuracy leaves
+/// more than nothing for it. Errors of scalars and lanes change the light of a layer, and they also move its end, where
+/// the optical depth is d = -log(1 - threshold), so that light moves to another layer (compositor/deep/layer_sink.hpp).
+inline double scalars_of_layers(double accuracy, double threshold, double brightest = 1, bool shaded = false) {
+  const double depth = -std::log1p(-threshold);
+  const double lanes = lane_integrals + (shaded ? lane_lights : 0);
+  return (accuracy - brightest * (lanes * (1 + 1.5 * depth) + float_picture)) / (1 + (1 + depth) / 2);
+}
 
 // Errors of deep images that are cut anywhere, for `deep_accuracy`: pieces, merged pieces, and the rounding of alpha.
 constexpr double deep_pieces(double accuracy) { return accuracy / 2; }
@@ -78,12 +84,6 @@ constexpr double mesh_on_lattice(double accuracy, double brightest = 1, bool sha
 }
 constexpr double exact_mesh_on_lattice(double brightest = 1, bool shaded = false) {
   return lattice_scalars_of_exact + brightest * (lane_integrals + (shaded ? lane_lights : 0) + float_picture);
-}
-/// The lattice changes the light of a layer, and moves the ends of the layer.
-constexpr double layers_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
-  return 2 * (lattice_scalars(lattice_of_layers(accuracy)) +
-              brightest * (lane_integrals + (shaded ? lane_lights : 0))) +
-         brightest * float_picture;
 }
 constexpr double mesh_in_double(double accuracy, double brightest = 1) {
   return ended(accuracy) + thick_pieces(accuracy) + dark_pieces(accuracy) + brightest * float_picture;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/deep/layer_sink.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessera::compositor {
@@ -50,8 +51,9 @@ integrals::OpenLayer LayerSink::layer_of(std::size_t p) const {
   const scene::Lattice& lattice = scene_.lattice;
   integrals::OpenLayer layer = cut_[p];
   layer.red = state_.red[p], layer.green = state_.green[p], layer.blue = state_.blue[p];
-  layer.transmittance = state_.transmittance[p];
-  layer.optical_depth = -std::log(layer.transmittance);
+  // The alpha of a lane may exceed 1 by rounding.
+  layer.transmittance = std::max(state_.transmittance[p], 0.0);
+  layer.optical_depth = -std::log(layer.transmittance);  // infinite where it is opaque
   if (std::isinf(layer.front) && state_.first_back[p] != WindowState::not_yet)
     layer.front = first_visible_depth(
         lattice,

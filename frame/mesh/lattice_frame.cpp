@@ -24,9 +24,14 @@ struct Brightness {
   double of_rays, of_surfaces, per_step;
 };
 /// Returns the largest change of a pixel that the rounding of scalars may cause: its share of the budget, or what the
-/// other errors leave. If it is not above zero, float lanes are not accurate enough.
-double most_error_of(const Settings& settings, const Brightness& light) {
+/// other errors leave. If it is not above zero, float lanes are not accurate enough. `peel`: of layers; may be null.
+double most_error_of(const Settings& settings, const Brightness& light, const Peel* peel) {
   const scene::Integrator& integrator = settings.integrator;
+  if (peel != nullptr) {
+    const bool exact = integrator.kind == scene::IntegratorKind::exact;
+    const double accuracy = exact ? budget::exact_layers : std::min(integrator.accuracy, budget::exact_layers);
+    return budget::scalars_of_layers(accuracy, peel->threshold, light.of_rays, settings.mesh.shading.has_value());
+  }
   const Surfaces& surfaces = settings.surfaces;
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic,
              shaded = settings.mesh.shading.has_value();
@@ -84,11 +89,11 @@ std::array<double, 2> with_values(std::array<double, 2> range, const Surfaces& s
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
-}  // namespace
-
-std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
-                                       const std::array<double, 2>& scalar_range,
-                                       const scene::TransferFunction& transfer_function, const Settings& settings) {
+/// `peel`: the lattice of layers; may be null.
+std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, const scene::Box& box,
+                                        const std::array<double, 2>& scalar_range,
+                                        const scene::TransferFunction& transfer_function, const Settings& settings,
+                                        const Peel* peel) {
   using scene::Lattice;
   const std::optional<scene::Shading>& shading = settings.mesh.shading;
   const scene::TransferFunction function =
@@ -123,7 +128,7 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
   const double of_surfaces = scene::SurfaceSet(settings.surfaces, transfer_function).max_color();
   const double per_step = depth_limits_of(space, lattice, function, settings.emission, longest).light_per_step;
   const double most_error =
-      most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step});
+      most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step}, peel);
   if (!(most_error > 0)) return std::nullopt;
   const double brightest = std::max({1.0, function.max_color() * (independent ? length : 1), of_surfaces});
   std::vector<FunctionPiece> pieces;
@@ -147,21 +152,21 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
   return magnify(scalars, {low, high}, pieces, most_error, transfer_function);
 }
 
+}  // namespace
+
+std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                       const std::array<double, 2>& scalar_range,
+                                       const scene::TransferFunction& function, const Settings& settings) {
+  return lattice_for(space, box, scalar_range, function, settings, nullptr);
+}
+
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings,
                                        const FrameSettings& frame) {
   if (!frame.by_depth()) return lattice_of(space, box, scalar_range, function, settings);
-  scene::Integrator method = settings.integrator;
-  const bool exact = method.kind == IntegratorKind::exact || method.kind == IntegratorKind::automatic;
-  if (!frame.peel || settings.emission == Emission::independent || !settings.surfaces.empty() || !exact)
-    return std::nullopt;
-  const double accuracy =
-      method.kind == IntegratorKind::automatic ? std::min(method.accuracy, budget::exact_layers) : budget::exact_layers;
-  Settings layered = settings;
-  layered.integrator.kind = IntegratorKind::automatic;
-  layered.integrator.accuracy = budget::lattice_of_layers(accuracy);
-  return lattice_of(space, box, scalar_range, function, layered);
+  if (!frame.peel || settings.emission == Emission::independent || !settings.surfaces.empty()) return std::nullopt;
+  return lattice_for(space, box, scalar_range, function, settings, &*frame.peel);
 }
 
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,

@@ -143,6 +143,16 @@ TEST(Peel, LayersOfMeshesAreMadeOnTheLattice) {
     }
 }
 
+// In such matter a segment may be opaque in single precision, and hide all that follows.
+TEST(Peel, LayersOfDenseMatterMatchTheReference) {
+  const Dataset data = Dataset::of(datasets::arrays_of(datasets::cube(4)));
+  for (const double extinction : {30.0, 100.0, 300.0, 600.0}) {
+    const TransferFunction ramp({{0, {0.9, 0.5, 0.1}, 0}, {1, {0.1, 0.8, 0.6}, extinction}});
+    for (const double threshold : {0.5, 0.9, 0.999})
+      expect_the_reference(data, exact(), view_of(ProjectionKind::orthographic), ramp, threshold, 3);
+  }
+}
+
 TEST(Peel, LayersOfGridsMatchTheReference) {
   test::SomeCases some(3);
   for (const auto association : {Association::point, Association::cell})

@@ -19,13 +19,6 @@ TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
     EXPECT_LE(budget::mesh_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::grid_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::deep(accuracy), accuracy) << accuracy;
-    const double of_layers = budget::lattice_of_layers(accuracy);
-    for (const double brightest : {1.0, 1.3, 4.0})
-      for (const bool shaded : {false, true}) {
-        if (budget::mesh_on_lattice(of_layers, brightest, shaded) <= of_layers) {
-          EXPECT_LE(budget::layers_on_lattice(accuracy, brightest, shaded), accuracy) << accuracy;
-        }
-      }
     for (const bool shaded : {false, true}) {
       const double lattice = budget::mesh_on_lattice(accuracy, 1, shaded);
       const double mesh = lattice <= accuracy ? lattice : budget::mesh_in_double(accuracy);
@@ -47,6 +40,22 @@ TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
   EXPECT_FALSE(budget::runs_keep(1e-5));
   // For brightness 1000 an image's last place exceeds the budget.
   EXPECT_GT(budget::mesh_on_lattice(1e-4, 1000), 1e-4);
+}
+
+TEST(ErrorBudget, LayersLeaveLessToScalarsTheMoreOpaqueTheyAre) {
+  // Without opacity: 1.5 times the scalars' share, the lanes and the image.
+  EXPECT_NEAR(1.5 * budget::scalars_of_layers(1e-5, 0) + budget::lane_integrals + budget::float_picture, 1e-5, 1e-18);
+  double last = 1;
+  for (const double threshold : {0.0, 0.1, 0.5, 0.9, 0.99, 0.9999}) {
+    const double share = budget::scalars_of_layers(1e-5, threshold);
+    EXPECT_GT(share, 0) << threshold;
+    EXPECT_LT(share, last) << threshold;
+    EXPECT_LT(budget::scalars_of_layers(1e-5, threshold, 1, true), share) << threshold;
+    EXPECT_LT(budget::scalars_of_layers(1e-5, threshold, 2), share) << threshold;
+    last = share;
+  }
+  EXPECT_LT(budget::scalars_of_layers(1e-5, 1 - 1e-9), 0);
+  EXPECT_LT(budget::scalars_of_layers(1e-6, 0.5), 0);
 }
 
 TEST(ErrorBudget, LightOfSurfacesIsAsUncertainAsItsSlope) {
