@@ -24,11 +24,10 @@ struct DeepSample {
 ///   |t_k - s (z_k - z0)| <= w_k    and    |L_k - S alpha(t_k)| <= e_light  in each channel.
 /// Every joint narrows the two intervals of allowed s and S; a piece is added to the sample if the resulting s and S
 /// are in them. Within a piece, the logarithms of both transmittances are linear in z, so they differ most at a joint;
-/// with w_k = log1p(e_T / T_(k-1)), the transmittances differ by at most e_T on both sides of the joint (2 x / (2 + x)
-/// is a lower bound of log1p(x)). Within a
-/// piece, light is linear in the alpha of the piece, so L - S alpha is largest at a joint, too, and |S alpha - S
-/// alpha'| <= S e_T. The error of a cut is at most T_before (e_light + (1 + S) e_T), plus the pieces' own half: e_light
-/// = accuracy / (4 T_before) and e_T = e_light / (1 + S_most). The sample ends before a piece with more light per alpha
+/// with w_k = log1p(e_T / T_(k-1)), the transmittances differ by at most e_T on both sides of the joint. The code uses
+/// 2 x / (2 + x), a lower bound of log1p(x). Within a piece, light is linear in the alpha of the piece, so L - S alpha
+/// is largest at a joint, too, and |S alpha - S alpha'| <= S e_T. The error of a cut is at most T_before (e_light +
+/// (1 + S) e_T), plus the pieces' own half: e_light = accuracy / (4 T_before) and e_T = e_light / (1 + S_most). The sample ends before a piece with more light per alpha
 /// than S_most, and before a piece that would make the sample more opaque than a float's alpha can represent
 /// (most_optical_depth).
 ///

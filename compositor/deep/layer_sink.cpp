@@ -7,7 +7,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Lanes let a layer end a little early; RayLayers then decides in double precision. Exceeds the error of lanes.
+/// Lanes pass a segment to RayLayers a little before the layer ends; RayLayers then decides in double precision.
 constexpr double margin = 1 + 2e-6;
 
 }  // namespace

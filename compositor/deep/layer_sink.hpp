@@ -21,8 +21,7 @@ namespace tessera::compositor {
 /// the end, the optical depth is d = -log(1 - threshold).
 ///   - Lanes have a relative error of e in a segment's alpha a. This changes the optical depth by e a / (1 - a), which
 ///     is at most 1.5 e times the segment's optical depth for a <= 1/2, so 1.5 e d in all.
-///   - The lattice rounds scalars such that the pieces i of the transfer function have extinctions with errors of at
-///   most
+///   - Rounding scalars to the lattice changes the extinction in piece i of the transfer function by at most
 ///     E (1 / L + sigma_i) / 2 (frame/mesh/lattice_frame.cpp). A ray's paths y_i in the pieces satisfy sum y_i <= L and
 ///     sum sigma_i y_i <= d, so the optical depth changes by at most E (1 + d) / 2.
 /// scene::error_budget::scalars_of_layers() has the sum.

@@ -13,8 +13,9 @@
 
 namespace tessera::frame {
 
-/// Renders a frame of a mesh in parts by as many ranks, each of which is projector and compositor. The parts are in a
-/// box with a diagonal of at most 4, and store the whole mesh's numbers of their tets as original_cell.
+/// Renders a frame of a mesh that is divided into parts. There is one rank for each part; every rank is a projector and
+/// a compositor. The parts must be in a box with a diagonal of at most 4. Their original_cell contains the numbers of
+/// their tets in the whole mesh.
 inline std::vector<FinishedFrame> render_parts(const std::vector<scene::TetMesh>& parts,
                                                const DistributedSettings& settings, const FrameJob& job,
                                                const scene::TransferFunction& function) {
