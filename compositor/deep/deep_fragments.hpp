@@ -27,9 +27,9 @@ struct DeepSample {
 /// with w_k = log1p(e_T / T_(k-1)), the transmittances differ by at most e_T on both sides of the joint. The code uses
 /// 2 x / (2 + x), a lower bound of log1p(x). Within a piece, light is linear in the alpha of the piece, so L - S alpha
 /// is largest at a joint, too, and |S alpha - S alpha'| <= S e_T. The error of a cut is at most T_before (e_light +
-/// (1 + S) e_T), plus the pieces' own half: e_light = accuracy / (4 T_before) and e_T = e_light / (1 + S_most). The sample ends before a piece with more light per alpha
-/// than S_most, and before a piece that would make the sample more opaque than a float's alpha can represent
-/// (most_optical_depth).
+/// (1 + S) e_T), plus the pieces' own half: e_light = accuracy / (4 T_before) and e_T = e_light / (1 + S_most). The
+/// sample ends before a piece with more light per alpha than S_most, and before a piece that would make the sample more
+/// opaque than a float's alpha can represent (most_optical_depth).
 ///
 /// Pieces without optical depth, which independent emission creates, are kept separate: their light is linear in z.
 /// Pieces are only merged if they touch with the same bits. If cells overlap, which is invalid, a piece may begin
