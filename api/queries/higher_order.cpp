@@ -75,7 +75,25 @@ class HigherOrderLevels {
     const HigherOrderCells& cells = data.higher_order_cells();
     if (!levels_.empty() && cells.tets < 2 * levels_.back().tets) levels_.pop_back();
     levels_.push_back({cells.tolerance, cells.tets, picture(data)});
+    error_ = infinite;
     if (levels_.size() >= 2) fit();
+  }
+
+  /// For few tets: estimates the error of the last level by comparison with the first of several finer ones that has at
+  /// least twice as many tets. In steps of four the error falls at least to about a half, and so changes the difference
+  /// by at most a half.
+  void compare_with_finer(ReadOptions options) {
+    constexpr std::uint64_t few_tets = 1 << 15;
+    const Level& last = levels_.back();
+    for (double times = 4; times <= 64 && last.tets <= few_tets; times *= 4) {
+      options.higher_order_tolerance = last.tolerance / times;
+      const Dataset finer = open_(options);
+      const HigherOrderCells& cells = finer.higher_order_cells();
+      if (cells.tolerance > options.higher_order_tolerance * (1 + 1e-9)) return;  // limited by `higher_order_tets`
+      if (cells.tets < 2 * last.tets) continue;
+      error_ = 2 * difference(last.picture, picture(finer)).largest;
+      return;
+    }
   }
 
   /// Estimates the error of the only level by comparison with two levels of larger tolerances, each with at most half
@@ -91,7 +109,6 @@ class HigherOrderLevels {
     }
   }
 
-  [[nodiscard]] std::size_t pictures() const { return levels_.size(); }
   /// Error of the last level; infinite if there are no two images to compare.
   [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] double tolerance_for(double error) const {
@@ -182,16 +199,17 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
     };
     if (cells.divided == 0) return taken(0);
     levels.draw(*data);
+    levels.compare_with_finer(read);
     const bool is_limited = cells.tolerance > read.higher_order_tolerance * (1 + 1e-9);
     if (!accuracy || is_limited || level == most_levels || levels.error() <= *accuracy) {
-      if (levels.pictures() == 1) levels.compare_with_coarser(read);
+      if (!std::isfinite(levels.error())) levels.compare_with_coarser(read);
       return taken(levels.error());
     }
     data.reset();  // free its memory before the next data set is read
     // Aim a little lower than requested, since one more level costs as much again.
-    const double wanted = levels.pictures() < 2 ? 0 : levels.tolerance_for(0.8 * *accuracy);
-    read.higher_order_tolerance =
-        std::clamp(wanted, cells.tolerance / (levels.pictures() < 2 ? 4 : 8), cells.tolerance / 2);
+    const bool is_known = std::isfinite(levels.error());
+    const double wanted = is_known ? levels.tolerance_for(0.8 * *accuracy) : 0;
+    read.higher_order_tolerance = std::clamp(wanted, cells.tolerance / (is_known ? 8 : 4), cells.tolerance / 2);
   }
 }
 
