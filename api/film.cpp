@@ -88,7 +88,7 @@ std::vector<TimeStep> steps_of_file(const FilmPlan& plan) {
 std::vector<TimeStep> steps(const FilmPlan& plan) {
   if (plan.inputs.empty()) throw bad_input("input: no file was given; give one");
   if (takes_steps_of_file(plan)) return steps_of_file(plan);
-  if (plan.inputs.size() == 1 && is_time_series(plan.inputs.front())) return read_time_series(plan.inputs.front());
+  if (!plan.series.empty()) return plan.series;
   std::vector<TimeStep> steps;
   for (const auto& input : plan.inputs) steps.push_back({static_cast<double>(steps.size()), {input}});
   for (const auto& step : steps)
@@ -101,12 +101,10 @@ std::vector<TimeStep> steps(const FilmPlan& plan) {
 }  // namespace
 
 bool is_series(const FilmPlan& plan) {
-  return plan.inputs.size() > 1 || is_time_series(plan.inputs.front()) || takes_steps_of_file(plan);
+  return plan.inputs.size() > 1 || !plan.series.empty() || takes_steps_of_file(plan);
 }
 
-bool takes_steps_of_file(const FilmPlan& plan) {
-  return plan.steps && plan.inputs.size() == 1 && !is_time_series(plan.inputs.front());
-}
+bool takes_steps_of_file(const FilmPlan& plan) { return plan.steps && plan.inputs.size() == 1 && plan.series.empty(); }
 
 std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
   const auto views_of_each = views(plan);

@@ -52,6 +52,7 @@ RenderOptions render_options(const OptionWords& words, bool is_grid) {
   plan.inputs = {words.word("input")};
   const auto& more = words.words("more");
   plan.inputs.insert(plan.inputs.end(), more.begin(), more.end());
+  if (more.empty() && is_time_series(plan.inputs.front())) plan.series = read_time_series(plan.inputs.front());
   plan.steps = api::time_steps(words);
   api::set_outputs(words, options);
   options.read = read_options(words, is_grid);

@@ -27,6 +27,7 @@ struct FilmPlan {
   std::vector<std::filesystem::path> inputs;  ///< one mesh, grid or time series; or several meshes or grids, each a
                                               ///< time step
   bool grids = false;                         ///< whether the inputs are grids
+  std::vector<TimeStep> series{};  ///< the steps of the only input, if it is a time series (read_time_series())
   /// The steps of a time series or of the list of inputs or, for a single file, the steps in that file (`file_steps` is
   /// their number). None: all steps of a series or, for a single file, the step of ReadOptions::time_step.
   std::optional<StepRange> steps{};
