@@ -20,12 +20,13 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Returns the view with its image reduced to the number of pixels that are compared.
-View small(View view) {
-  constexpr double most_pixels = 1 << 16;
-  const double shrink = std::sqrt(most_pixels / (static_cast<double>(view.size.width) * view.size.height));
-  const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * shrink))); };
-  if (shrink < 1) view.size = {side(view.size.width), side(view.size.height)};
+/// Returns the view with the number of pixels that are compared. An image of fewer pixels might miss the largest
+/// errors, which are at few rays along the surface.
+View compared(View view) {
+  constexpr double pixels = 1 << 16;
+  const double factor = std::sqrt(pixels / (static_cast<double>(view.size.width) * view.size.height));
+  const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * factor))); };
+  view.size = {side(view.size.width), side(view.size.height)};
   return view;
 }
 
@@ -79,11 +80,11 @@ class HigherOrderLevels {
     if (levels_.size() >= 2) fit();
   }
 
-  /// For few tets: estimates the error of the last level by comparison with the first of several finer ones that has at
-  /// least twice as many tets. In steps of four the error falls at least to about a half, and so changes the difference
-  /// by at most a half.
+  /// For few tets: estimates the error of the last level by comparison with the first of several finer levels that has
+  /// at least twice as many tets. A tolerance of a quarter reduces the error to about a half or less, so the error of
+  /// the last level is at most about twice the difference.
   void compare_with_finer(ReadOptions options) {
-    constexpr std::uint64_t few_tets = 1 << 15;
+    constexpr std::uint64_t few_tets = 1 << 16;
     const Level& last = levels_.back();
     for (double times = 4; times <= 64 && last.tets <= few_tets; times *= 4) {
       options.higher_order_tolerance = last.tolerance / times;
@@ -119,7 +120,7 @@ class HigherOrderLevels {
 
  private:
   [[nodiscard]] Image picture(const Dataset& data) {
-    if (!scene_) scene_.emplace(view_ ? small(view_(data)) : data.default_view({128, 128}), function_(data));
+    if (!scene_) scene_.emplace(view_ ? compared(view_(data)) : data.default_view({128, 128}), function_(data));
     Session session(data, settings_, communicator_);
     return session.render(scene_->first, scene_->second).image;
   }
@@ -206,7 +207,7 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
       return taken(levels.error());
     }
     data.reset();  // free its memory before the next data set is read
-    // Aim a little lower than requested, since one more level costs as much again.
+    // The target is slightly below the requested accuracy, because missing it would cost one more level.
     const bool is_known = std::isfinite(levels.error());
     const double wanted = is_known ? levels.tolerance_for(0.8 * *accuracy) : 0;
     read.higher_order_tolerance = std::clamp(wanted, cells.tolerance / (is_known ? 8 : 4), cells.tolerance / 2);
