@@ -17,7 +17,7 @@ namespace {
 // another mark.
 constexpr std::array<std::uint32_t, 8> colors = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7,
                                                  0xe69f00, 0x56b4e9, 0x7f7f7f, 0x222222};
-constexpr double least_error = 1e-9;  // place of errors of 0, and the smallest error drawn
+constexpr double least_error = 1e-9;  // smaller errors, including 0, are drawn at this error
 
 std::uint32_t paler(std::uint32_t rgb) {
   std::uint32_t result = 0;
@@ -158,8 +158,7 @@ class Chart {
           return place.x0 < t.x1 && t.x0 < place.x1 && place.y0 < t.y1 && t.y0 < place.y1;
         });
         if (!free || place.x0 < left || place.x1 > width) continue;
-        canvas.rectangle(place.x0 - 1, place.y0 + 1, wide + 2, size + 1, 0xffffff);  // covers lines that would cross
-                                                                                     // the text
+        canvas.rectangle(place.x0 - 1, place.y0 + 1, wide + 2, size + 1, 0xffffff);  // hides lines behind the text
         canvas.text(place.x0, at_y + dy, words, size, 0, bold ? 0x222222 : 0x888888);
         taken.push_back(place);
         return;

@@ -19,8 +19,8 @@ struct ChartError {
   double max = 0;            ///< largest absolute difference in linear premultiplied RGBA
   double rms = 0;            ///< root mean square over pixels and channels
   double p999 = 0;           ///< the 99.9 % quantile of the pixels' largest differences
-  double visible_share = 0;  ///< share of pixels that differ by a Delta E 2000 above 1; compared over black, encoded to
-                             ///< sRGB and clamped
+  double visible_share = 0;  ///< share of pixels that differ by a Delta E 2000 above 1. Both images are composited over
+                             ///< black, encoded to sRGB and clamped
   bool finite = true;        ///< the image contains no NaN or infinity; otherwise `max` is infinite
 };
 

@@ -52,7 +52,7 @@ class MeshMethods final : public MethodList {
     if (!planes && scene_.view.camera.projection != ProjectionKind::orthographic)
       method.left_out = "scanline takes orthographic views only";
     if (integrator.kind == IntegratorKind::partial && scene_.emission == Emission::independent)
-      method.left_out = "partial supports emission by absorption only";
+      method.left_out = "partial supports only emission proportional to extinction";
     return method;
   }
   ChartMethod& plain(Rasterizer rasterizer, IntegratorKind kind, const char* word) {
@@ -158,7 +158,7 @@ std::vector<ChartMethod> grid_methods(const ChartScene& scene) {
 ChartRenderer::ChartRenderer(const ChartScene& scene, const ChartMethod& method) : scene_(scene), method_(method) {
   if (method.ranks > 1) return;
   session_.emplace(scene.data, method.settings);
-  // The first frame builds the tables of the transfer function, which the session of a mesh keeps.
+  // The session of a mesh builds the tables of the transfer function in its first frame and keeps them.
   if (scene.data.is_mesh() && method.settings.mesh.device.backends.empty())
     session_->render({scene.view.camera, {1, 1}}, scene.function);
 }

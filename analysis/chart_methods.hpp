@@ -38,7 +38,7 @@ struct ChartMethod {
   std::string preset;    ///< preset of `render`, if it specifies the whole method
   std::string left_out;  ///< reason why the method is not available here; empty if it is available
 
-  /// Whether the method may be recommended: not if it needs several ranks or switches optimizations off.
+  /// Whether the method may be recommended. False if it needs several ranks or switches optimizations off.
   [[nodiscard]] bool recommended() const {
     return ranks == 1 && settings.use == Mechanisms() && settings.integrator.terminates;
   }

@@ -22,8 +22,8 @@ struct ChartTruth {
   double seconds = 0;
 };
 
-/// Computes the reference for `pixels` random pixels or, without a number, for as many as `seconds` allow, which pilots
-/// of increasing size determine.
+/// Computes the reference for `pixels` random pixels. Without a number, computes as many pixels as `seconds` allow;
+/// pilots of increasing size determine how many.
 ChartTruth chart_truth(const ChartScene& scene, double seconds, std::optional<std::size_t> pixels);
 
 struct ChartBudget {
@@ -42,7 +42,7 @@ struct ChartSweep {
 
 /// Times and compares all available methods. The first method is always measured. Another method is measured if its
 /// time, estimated from its family or by a rough guess, is within the budget. `measured` is called for each measured
-/// method. If a method throws an Error, its text becomes left_out.
+/// method. If a method throws an Error, the method's `left_out` becomes the error's text.
 ChartSweep sweep(const ChartScene& scene, const std::vector<ChartMethod>& methods, const ChartTruth& truth,
                  const ChartBudget& budget, const std::function<void(const ChartPoint&)>& measured);
 

@@ -30,7 +30,7 @@ glm::dvec3 lab_of_linear(const glm::dvec3& c) {
 }
 
 double delta_e_2000(const glm::dvec3& lab_1, const glm::dvec3& lab_2) {
-  // Equations 2 to 22 of the paper.
+  // Equations 2 to 22 of Sharma et al. 2005 (delta_e.hpp).
   const double mean_chroma = 0.5 * (std::hypot(lab_1.y, lab_1.z) + std::hypot(lab_2.y, lab_2.z));
   const double c7 = std::pow(mean_chroma, 7), twenty_five_7 = std::pow(25.0, 7);
   const double g = 0.5 * (1 - std::sqrt(c7 / (c7 + twenty_five_7)));

@@ -32,7 +32,7 @@ namespace tessera::analysis {
 struct StageTime {
   std::string stage;
   double average_us = 0;                  ///< attributed wall clock time, mean over processes
-  double worst_us = 0;                    ///< attributed time of the process with the largest
+  double worst_us = 0;                    ///< largest attributed wall clock time of a process
   int worst_rank = 0;                     ///< the rank of that process
   double share = 0;                       ///< share of the average whole
   double cpu_us = 0;                      ///< CPU time, mean over processes
@@ -44,7 +44,7 @@ struct StageTime {
 struct RoleTime {
   TraceRole role = TraceRole::both;
   int processes = 0;
-  bool has_frames = true;          ///< false: there is no `frame` span, so that the whole is everything traced
+  bool has_frames = true;          ///< false: there is no `frame` span, so that the whole is the time of all spans
   StageTime whole;                 ///< its CPU time and bytes are the sums over stages
   double busy_threads = 0;         ///< number of threads in a stage other than `wait`, mean over the whole
   std::vector<StageTime> stages;   ///< stages in frames, in the order of the pipeline, `other` last

@@ -145,9 +145,11 @@ std::string overlap_text(const RunTime& run) {
     line("  taken in by compositors", overlap.received_before_projected, overlap.received_before_frame_end);
   }
   if (overlap.frames > 0)
-    text += fmt::format("  {} of {} frames began projecting before the previous frame was composited, {} of the time\n",
-                        overlap.frames_overlapping, overlap.frames,
-                        percent(run.elapsed_us > 0 ? overlap.overlapping_us / run.elapsed_us : 0));
+    text += fmt::format(
+        "  {} of {} frames began projecting before the previous frame was composited; two frames overlapped for {} of "
+        "the time\n",
+        overlap.frames_overlapping, overlap.frames,
+        percent(run.elapsed_us > 0 ? overlap.overlapping_us / run.elapsed_us : 0));
   return text.empty() ? "" : "\nOverlap\n" + text;
 }
 

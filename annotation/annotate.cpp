@@ -43,9 +43,9 @@ Sheet sketched(const Annotation& annotation, const Screen& screen, const Typefac
 
 using Pixel = TiledLayer::Pixel;
 
-/// Returns the pixel of the annotation alone: the layer in front of the data, and the layer behind them as seen through
-/// `picture`. For a layer L behind the image P, the result P + (1 - A_P) L equals "over" of the pixel ((1 - A_P) L +
-/// A_L P, A_L) and P.
+/// Returns the pixel of the annotation alone: the layer in front of the data and, as seen through `picture`, the layer
+/// behind the data. For a layer L behind the image P, the result P + (1 - A_P) L equals "over" of the pixel ((1 - A_P)
+/// L + A_L P, A_L) and P.
 Pixel joined(const Pixel* over, const Pixel* behind, const float* picture) {
   Pixel pixel{};
   if (behind != nullptr && (*behind)[3] > 0) {

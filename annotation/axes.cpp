@@ -156,7 +156,7 @@ void add_triad(Sketch& sketch, Place place) {
     const glm::dvec2 along(basis.right[axis], -basis.up[axis]);
     add_arrow(sketch, middle, along * arm, pen);
     const double length = glm::length(along);
-    // The letter of an axis that is seen along its direction is next to the middle.
+    // If an axis is seen along its direction, its letter is next to the middle of the triad.
     const glm::dvec2 at =
         length > 0.15 ? along * arm + along / length * (0.7 * face.size()) : glm::dvec2(-0.6, 0.6) * face.size();
     sketch.sheet.on_top.marks.emplace_back(centred(face, middle + at, axis_names[static_cast<std::size_t>(axis)], pen));

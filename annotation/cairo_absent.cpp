@@ -11,7 +11,8 @@ void validate(const Annotation& annotation, const TransferFunction&) {
   if (!annotation.color_bar && !annotation.axes && !annotation.outline && !annotation.scale_bar &&
       annotation.texts.empty())
     return;
-  throw bad_input("annotation: needs Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or draw none");
+  throw bad_input(
+      "annotation: needs Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or leave the annotation out");
 }
 
 void annotate(Image&, const Annotation& annotation, const View&, const Box&, const TransferFunction& function) {

@@ -32,7 +32,8 @@ Ink::Ink(const AnnotationStyle& style) : display_(style.display_colors) {
   constexpr glm::dvec3 black(0), white(1);
   ink_ = style.ink ? *style.ink : !style.background || is_bright(light(*style.background)) ? black : white;
   dark_ = !is_bright(light(ink_));
-  // A halo in the colour of the background is invisible on the background. It is used if it differs from the ink.
+  // A halo in the colour of the background is invisible on the background. The halo has this colour if it contrasts
+  // with the ink.
   const bool differs = style.background && is_bright(light(*style.background)) == dark_;
   halo_ = differs ? *style.background : dark_ ? white : black;
 }

@@ -23,7 +23,7 @@ Typeface::Typeface(double size) : size_(size) {
   cairo_scaled_font_t* font = cairo_get_scaled_font(measure_.get());
   if (const cairo_status_t status = cairo_status(measure_.get()); status != CAIRO_STATUS_SUCCESS)
     throw Error(ErrorCode::system_failure, fmt::format("annotation: Cairo failed: {}", cairo_status_to_string(status)));
-  // If the machine has no font, Cairo uses a font of its own, which has only ASCII characters made of strokes.
+  // If the machine has no font, Cairo uses its built-in font, which has only ASCII characters made of strokes.
   if (cairo_scaled_font_get_type(font) == CAIRO_FONT_TYPE_USER)
     throw Error(ErrorCode::system_failure,
                 "annotation: no font was found; install one that fontconfig can find (Debian: fonts-dejavu-core)");
@@ -63,7 +63,7 @@ std::string Typeface::fitted(const std::string& text, double room) const {
   before.push_back(text.size());
   for (std::size_t i = text.size(); i > 0 && before.size() <= longest; --i)
     if (begins(i - 1)) before.push_back(i - 1);
-  const auto with = [&](std::size_t kept) {  // keeps more letters of the beginning than of the end, which may be a unit
+  const auto with = [&](std::size_t kept) {  // keeps less of the end, which may be a unit, than of the beginning
     return text.substr(0, after[kept - kept / 3]) + "…" + text.substr(before[kept / 3]);
   };
   std::size_t fits = 0, too_many = after.size() - 1;

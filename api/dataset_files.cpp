@@ -34,7 +34,7 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// Throws Error(bad_input) for options that are not for such a file.
+/// Throws Error(bad_input) for options that do not apply to a file of this kind.
 void check_options(const std::filesystem::path& file, const ReadOptions& options, bool is_grid) {
   if (const auto& scale = options.axis_scale)
     for (int axis = 0; axis < 3; ++axis)
@@ -168,7 +168,7 @@ std::shared_ptr<Dataset::State> opened_mesh(std::span<const std::filesystem::pat
   const Roles roles = assign_roles(transport.size(), ranks.projectors, ranks.compositors);
   frame::DistributedMesh mesh =
       frame::read_distributed(transport, files, first, options, ranks.partition, roles.projectors);
-  api::require_same_files(transport);  // the ones that the mesh names
+  api::require_same_files(transport);  // the files to which the mesh's files refer
   take_description(std::move(mesh.description), *state);
   state->facts = mesh.facts;
   state->of_all = std::move(mesh.of_all);

@@ -178,7 +178,7 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
   std::vector<FieldInfo> widest;
   for (const FieldInfo& first : steps.front()) {
     FieldInfo field = first;
-    // A field may vary only in one step, for example an initial ramp.
+    // A field that varies in only one step is a quantity, too, for example an initial ramp.
     bool is_quantity = false;
     const bool everywhere = std::ranges::all_of(steps, [&](const std::vector<FieldInfo>& step) {
       const auto found = std::ranges::find_if(step, [&](const FieldInfo& f) { return is_same(f, field); });
@@ -231,7 +231,7 @@ void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::
       check_new(output);
       for (const auto& file : frame.data.files) check_not_input(output, file);
       if (frame.finished) continue;
-      // The file system is queried once per directory and length of name; every existing name needs a query of its own.
+      // The file system is queried once per directory and length of name; every existing name needs a separate query.
       std::error_code unknown;
       const std::string kind = fmt::format("{}{}", output.filename().native().size(), output.extension().string());
       if (folders.insert(output.parent_path() / kind).second || std::filesystem::exists(output, unknown) || unknown)

@@ -15,8 +15,8 @@
 /// Functions with a transport are collective. All functions add notes to the volume.
 namespace tessera::api {
 
-/// Fill values would dominate the range and the colours, and hide what the volume is: huge ones become blank; for
-/// others a note explains how to leave them out.
+/// Detects fill values, which would dominate the range and the colours. Huge fill values become blank; for other fill
+/// values, a note explains how to leave them out.
 void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file,
                            const std::optional<std::array<double, 2>>& threshold, exchange::Transport& transport,
                            std::shared_ptr<const volume::CellRanges>& ranges);

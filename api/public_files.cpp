@@ -134,13 +134,13 @@ void write_mesh_pieces(const MeshArrays& arrays, const std::filesystem::path& fi
 void check_mesh_output(const std::filesystem::path& file, const InputFile* input, std::optional<int> pieces) {
   const InputFile::Found* const found = input == nullptr ? nullptr : &StateAccess::of(*input);
   if (found != nullptr && !found->is_there) throw system::missing_file(input->path());
-  if (found != nullptr) io::require_mesh(found->file);  // first: another output would not help
+  if (found != nullptr) io::require_mesh(found->file);  // first: no output suits an input that is not a mesh
   const std::filesystem::path read = input == nullptr ? std::filesystem::path() : input->path();
   const auto extension = file.extension();
   if (!pieces) {
     if (extension == ".pvtu")
       throw scene::bad_input(
-          fmt::format("{}: one mesh in pieces is what convert `pieces` writes; choose .vtu or .tets", file.string()));
+          fmt::format("{}: only convert `pieces` writes a mesh in pieces; choose .vtu or .tets", file.string()));
     if (extension != ".vtu" && extension != ".tets")
       throw scene::bad_input(fmt::format("{}: '{}' is not a mesh format to write; choose .vtu or .tets", file.string(),
                                          extension.string()));

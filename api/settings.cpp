@@ -37,8 +37,7 @@ void require_range(const char* setting, Number value, Number least, Number most,
 
 void check_shading(const Shading& shading, Emission emission) {
   if (emission == Emission::independent)
-    throw scene::bad_input(
-        "`shade`: shading needs emission that is proportional to extinction; leave one of the two out");
+    throw scene::bad_input("`shade`: shading does not support `emission` independent; leave one of the two out");
   const double length = glm::length(shading.to_light);
   if (!(length > 0) || !std::isfinite(length))
     throw scene::bad_input("`light`: the direction to the light has no length; give the direction towards the light");
@@ -55,7 +54,7 @@ void check_integrator_of_mesh(const Integrator& integrator, Emission emission) {
     throw scene::bad_input(
         fmt::format("`integrator` preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
   if (integrator.kind == IntegratorKind::partial && emission == Emission::independent)
-    throw scene::bad_input("`integrator` partial: supports emission by absorption only; use exact or auto");
+    throw scene::bad_input("`integrator` partial: it supports only `emission` absorption; use exact or auto");
 }
 
 void check_device_rasterizer(const DeviceSettings& device) {
@@ -135,8 +134,8 @@ void validate(const FrameSettings& frame, const Settings& settings, DataKind dat
   const IntegratorKind kind = settings.integrator.kind;
   const bool exact = kind == IntegratorKind::exact || kind == IntegratorKind::automatic;
   if (data == DataKind::grid && !exact)
-    throw scene::bad_input(fmt::format(
-        "{}: the light of a step along a ray differs from that of its parts; set `integrator` auto or exact", what));
+    throw scene::bad_input(
+        fmt::format("{}: cutting a step along a ray changes its colour; set `integrator` auto or exact", what));
   if (data == DataKind::grid && settings.grid.shading && !frame.peel)
     throw scene::bad_input("deep image: shading is not supported; leave `shade` out");
   if (data == DataKind::mesh && settings.mesh.rasterizer == Rasterizer::scanline)
@@ -144,7 +143,7 @@ void validate(const FrameSettings& frame, const Settings& settings, DataKind dat
         fmt::format("{}: `rasterizer` scanline leaves gaps and overlaps in depth; use planes", what));
   if (data == DataKind::mesh && !exact)
     throw scene::bad_input(fmt::format(
-        "{}: with `integrator` {}, the light of a segment differs from that of its parts; use exact or auto", what,
+        "{}: with `integrator` {}, cutting a ray segment changes its colour; use exact or auto", what,
         integrals::SegmentIntegrator(TransferFunction({Knot{}}), settings.integrator, settings.emission).name()));
 }
 

@@ -148,8 +148,8 @@ void warn_of_nothing(const Dataset::State& data, const std::string& file_or_pres
   } else if (chosen && !options.logarithmic && knots.size() > 1 &&
              colormaps::is_far_off({knots.front().value, knots.back().value}, data.facts_of_all().scalar_range)) {
     loaded.warnings.push_back(fmt::format(
-        "the transfer function shows almost nothing: its {:.6g} to {:.6g} holds hardly any of the field's "
-        "{:.6g} to {:.6g}, or all in one place, so that nearly all has one colour and opacity; {}",
+        "the transfer function shows almost nothing: its range, {:.6g} to {:.6g}, contains hardly any of the field's "
+        "values, {:.6g} to {:.6g}, or is so wide that nearly all of them have one colour and opacity; {}",
         knots.front().value, knots.back().value, low, high, remedy_for_clear(loaded, options, {low, high}, emits)));
   }
 }

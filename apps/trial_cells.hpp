@@ -35,7 +35,7 @@ class TrialCells {
   /// The cell that contains the largest ball; radius 0 if there is no cell.
   [[nodiscard]] Cell largest() const;
 
-  /// The number of pixels, for an image of this size, that are not visible just by accident.
+  /// The number of visible pixels at which an image of this size is considered not to be empty.
   static std::uint64_t enough(ImageSize size) {
     return static_cast<std::uint64_t>(std::clamp<std::int64_t>(std::int64_t{size.width} * size.height / 256, 1, 64));
   }

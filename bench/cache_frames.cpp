@@ -48,7 +48,7 @@ struct Run {
       else if (numbers.contains(name) && !value.empty())
         numbers[name] = std::stod(value);
       else
-        throw scene::bad_input(fmt::format("cache_frames: '{}' is no NAME=VALUE of its own", argument));
+        throw scene::bad_input(fmt::format("cache_frames: '{}' is not one of its parameters NAME=VALUE", argument));
     }
   }
   [[nodiscard]] int whole(const char* name) const { return static_cast<int>(numbers.at(name)); }
@@ -89,14 +89,15 @@ Scanned scanned(const Run& run) {
   return scanned;
 }
 
-/// The functions named in datasets/volume_fields.hpp, thin enough that few rays end early.
+/// The functions named in datasets/volume_fields.hpp, so transparent that few rays end early.
 scene::TransferFunction function_of(const std::string& volume) {
   if (volume == "head") return scene::TransferFunction({{64, {0.8, 0.5, 0.4}, 0}, {255, {1, 1, 0.9}, 2}});
   return scene::TransferFunction({{76.5, {0.2, 0.4, 0.9}, 0}, {127.5, {1, 1, 1}, 2}, {178.5, {0.9, 0.4, 0.2}, 0}});
 }
 
-/// turn: around the x axis, the volume as large as the image, `degrees` per frame. zoom: from far away to the middle
-/// and back, as often as a turn of `degrees` is completed. explore: all of these, and panning, like a user exploring.
+/// turn: the camera turns around the x axis by `degrees` per frame, and the volume is as large as the image. zoom: the
+/// camera moves from far away to the middle and back, once per 360 / `degrees` frames. explore: the camera turns, zooms
+/// and pans, like a user exploring the volume.
 scene::Camera camera_at(const Run& run, int frame) {
   const double angle = glm::radians(run.numbers.at("degrees")) * frame;
   scene::Camera camera;

@@ -32,7 +32,8 @@ std::unique_ptr<scene::SampleSource> ripples(int bits) {
   return bits == 8 ? kept(std::uint8_t{}) : kept(float{});
 }
 
-/// bench/transfer_function.txt, or one that is opaque, or clear except at its ends.
+/// Returns the function of bench/transfer_function.txt, an opaque variant of it (`opaque`), or a function that is
+/// transparent below 0.85 of the range (`sparse`).
 scene::TransferFunction function(const std::string& kind, double scale) {
   std::vector<scene::Knot> knots = {{0.0, {0.0, 0.0, 0.3}, 0.0}, {0.3, {0.1, 0.3, 0.9}, 0.4},
                                     {0.5, {0.2, 0.9, 0.3}, 0.0}, {0.7, {0.9, 0.8, 0.1}, 3.0},

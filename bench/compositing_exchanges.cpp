@@ -69,7 +69,8 @@ struct Run {
       const std::size_t at = argument.find('=');
       const auto found = words.find(argument.substr(0, at));
       if (at == std::string::npos || found == words.end())
-        throw scene::bad_input(fmt::format("compositing_exchanges: '{}' is no NAME=VALUE of its own", argument));
+        throw scene::bad_input(
+            fmt::format("compositing_exchanges: '{}' is not one of its parameters NAME=VALUE", argument));
       found->second = argument.substr(at + 1);
     }
   }
@@ -102,7 +103,7 @@ struct Parts {
 struct Cost {
   std::uint64_t bytes = 0, messages = 0;  ///< over all ranks
   std::uint64_t most_bytes = 0;           ///< sent by one rank
-  double cpu_seconds = 0;                 ///< of the rank with most
+  double cpu_seconds = 0;                 ///< of the rank with the largest time
   double error = 0;
 
   void add(std::uint64_t rank_bytes, std::uint64_t rank_messages, double rank_seconds) {
@@ -162,7 +163,7 @@ class Swap {
   std::uint64_t bytes = 0, messages = 0;
 
  private:
-  /// Where any of `stride` consecutive ranks in depth order, which have been composited, is visible.
+  /// Returns the rectangle that contains the visible parts of `stride` consecutive ranks in depth order.
   [[nodiscard]] PixelRect block(int number, int stride) const {
     PixelRect all{0, 0, 0, 0};
     for (int place = number * stride; place < (number + 1) * stride; ++place)
@@ -188,7 +189,8 @@ class Swap {
     const auto r = reader.take<PixelRect>();
     if (const PixelRect expected = scene::common(region, block(place / stride, stride));
         !expected.empty() && (r.x0 != expected.x0 || r.y0 != expected.y0 || r.x1 != expected.x1 || r.y1 != expected.y1))
-      throw scene::Error(scene::ErrorCode::system_failure, "compositing_exchanges: a message is of other pixels");
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         "compositing_exchanges: a message contains the pixels of another rectangle");
     if (r.empty()) return;
     scratch_.size = {r.width(), r.height()};
     scratch_.depth.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
@@ -391,7 +393,7 @@ Parts pictures_of(const MeshParts& meshes, const Settings& settings, const scene
   return parts;
 }
 
-/// Runs from N projectors to N compositors; `fragments` receives their number.
+/// Measures the exchange of runs from N projectors to N compositors. The number of fragments is added to `fragments`.
 std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, const Settings& settings,
                        const scene::TransferFunction& function, std::span<const frame::FrameJob> jobs,
                        std::span<const Parts> views, std::uint64_t& fragments) {

@@ -136,7 +136,7 @@ def main():
             section.row(*row)
     section.keep("`tessera render FILE -o OUT` without other options, 1024 x 1024 pixels. For pixels with alpha of 1/255 or more, the targets are a mean alpha of "
                  "0.05 to 0.6, at most 2 % with alpha of 0.98 or more, and 3 distinguishable colours. Data sets within all three targets: "
-                 f"{len(files) - len(outside)} of {len(files)}, including shapes (meshes without a field), which are not judged")
+                 f"{len(files) - len(outside)} of {len(files)}, counting shapes (meshes without a field), which have no targets")
 
 
 if __name__ == "__main__":

@@ -85,8 +85,8 @@ struct Frame {
   std::size_t entries = 0;
 };
 
-/// Nanoseconds of each stage over all tiles, in the order of a frame: sixteen cells, scattered, and composited when a
-/// list is full.
+/// Seconds of each stage over all tiles, in the order of a frame: cells are rasterized in batches, their segments are
+/// scattered to lists, and the lists are composited when one of them is full.
 struct Stages {
   double rasterize = 0, scatter = 0, composite = 0;
   std::uint64_t cells = 0, segments = 0;

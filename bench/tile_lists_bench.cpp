@@ -76,8 +76,8 @@ void transform(benchmark::State& state, Stage& s) {
   });
 }
 
-/// Reports the reads per tet: 64 threads on fewer cores do the same work as on 64. `serial`: while all threads but one
-/// wait.
+/// Reports the reads per tet. The reads depend on the number of threads, but not on the number of cores. `serial`:
+/// reads during which all threads but one wait.
 void show_reads(benchmark::State& state, const Stage& s, const projection::TileListReads& before,
                 const projection::TileListReads& after) {
   const auto tets = static_cast<double>(s.mesh.tets.size());

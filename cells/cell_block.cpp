@@ -47,16 +47,17 @@ void require_faces(const CellBlock& block, const std::string& where) {
           fmt::format("{}: cell {} is a polyhedron {}; the faces are damaged, write them again", where, c, what));
     };
     if (first >= numbers)
-      throw refuse(fmt::format("whose faces begin at {} of {} numbers", block.face_locations[c], numbers));
+      throw refuse(fmt::format("whose faces begin at number {}, but there are only {} numbers", block.face_locations[c],
+                               numbers));
     std::size_t at = first + 1;
     for (std::uint32_t left = block.faces[first]; left > 0; --left) {
       if (at >= numbers || block.faces[at] >= numbers - at)
-        throw refuse(
-            fmt::format("of {} faces whose lists end after the last of the {} numbers", block.faces[first], numbers));
+        throw refuse(fmt::format("with {} faces, whose lists end after the last of the {} numbers", block.faces[first],
+                                 numbers));
       const std::size_t end = at + 1 + block.faces[at];
       for (++at; at < end; ++at)
         if (block.faces[at] >= points)
-          throw refuse(fmt::format("with point {} in a face, of {} points", block.faces[at], points));
+          throw refuse(fmt::format("with point {} in a face, but there are only {} points", block.faces[at], points));
     }
     used += at - first;
     if (used > numbers) throw refuse("that has faces of another cell");

@@ -15,7 +15,7 @@
 
 namespace tessera::cells {
 
-/// As the number of a component: the length of the field's tuples instead of one component.
+/// A component number that selects the length of the field's tuples instead of one component.
 inline constexpr int magnitude = -1;
 
 /// One array of a block. Its values are read on demand, so that only the chosen field is converted.

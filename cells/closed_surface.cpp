@@ -120,8 +120,8 @@ std::uint32_t ClosedSurface::group_of(std::uint32_t face, bool& turned) {
   return root;
 }
 
-/// Flips faces so that each pair of faces that are the only ones at an edge use the edge in opposite directions, and
-/// each connected group has a volume that is not negative. Returns false if the surface is still not closed.
+/// Flips faces so that the faces at an edge with exactly two faces use it in opposite directions, and each connected
+/// group of faces has a volume that is not negative. Returns false if the surface is still not closed.
 bool ClosedSurface::turn_faces() {
   parent_.resize(face_count());
   for (std::size_t f = 0; f < face_count(); ++f) parent_[f] = static_cast<std::uint32_t>(f);

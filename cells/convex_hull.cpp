@@ -38,8 +38,8 @@ class Hull {
           if (side == Side::supporting && std::none_of(found_.begin(), found_.end(), is_same))
             found_.push_back({on_, normal_});
         }
-    // Planes are sorted, because those through points that are close to each other are inaccurate and contain fewer
-    // points of their face.
+    // Planes with the most points come first, because a plane through three points that are close to each other is
+    // inaccurate and contains fewer points of its face.
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Plane& a, const Plane& b) { return a.points.size() > b.points.size(); });
     std::vector<Plane> kept;

@@ -85,8 +85,8 @@ class CellKeys {
   std::unique_ptr<std::uint64_t[]> of_vertex_;
 };
 
-/// A set of keys that stores only a slot and 32 bits of each key. For 10 million different keys, it reports a false
-/// match about once in some hundred meshes, so matches are then compared.
+/// A set of keys that identifies a key by its slot and 32 of its bits. For 10 million different keys, it reports a
+/// false match in about one of several hundred meshes, so the cells of matches are then compared.
 class KeySet {
  public:
   explicit KeySet(std::size_t keys)

@@ -8,10 +8,10 @@
 
 namespace tessera::cells {
 
-/// Counts, and with `drop` removes, cells whose tets have the same corner positions as an earlier cell's: parts that
-/// were merged several times. Such cells appear twice as dense as they are. Vertices are kept, and original_cell keeps
-/// the cells' original numbers. Takes O(tets) time, and temporarily 8 bytes a vertex and 6 a cell, plus 16 for each
-/// duplicate.
+/// Counts, and with `drop` removes, cells whose tets have the same corner positions as those of an earlier cell, for
+/// example if a part was merged several times. Duplicate cells would appear twice as dense as they are. Vertices are
+/// kept, and original_cell keeps the cells' original numbers. Takes O(tets) time, and temporarily 8 bytes per vertex, 6
+/// bytes per cell and 16 bytes per duplicate.
 std::uint64_t find_duplicate_cells(scene::TetMesh& mesh, bool drop);
 
 /// Only counts.
@@ -21,8 +21,8 @@ std::uint64_t count_duplicate_cells(const scene::TetMeshView& mesh);
 /// cells of two parts with equal keys are duplicates, except for one pair in 2^64.
 std::vector<std::uint64_t> duplicate_keys(const scene::TetMeshView& mesh);
 
-/// The number of keys equal to an earlier one: for the keys of all parts, the result of find_duplicate_cells() for the
-/// whole mesh.
+/// Returns the number of keys that are equal to an earlier key. For the keys of all parts, this is the result of
+/// find_duplicate_cells() for the whole mesh.
 std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys);
 
 }  // namespace tessera::cells

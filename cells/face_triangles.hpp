@@ -18,9 +18,8 @@ using CornerTriangle = std::array<std::uint32_t, 3>;
 ///              cell_split.hpp. The same applies to other faces that are completely visible from that corner.
 /// Not convex   Ears are cut off, the one with the shortest cut first, as seen along the face's area vector.
 /// Degenerate   Collinear corners are kept, if necessary in triangles without an area, so that no edge is lost.
-/// Cost         is quadratic in the number of corners if ears are cut. Faces of more than `most_ears` corners become
-/// fans
-///              whatever their shape.
+/// Cost         is quadratic in the number of corners if ears are cut. Faces of more than `most_ears` corners
+///              become fans whatever their shape.
 class FaceCutter {
  public:
   static constexpr std::size_t most_ears = 512;
@@ -41,7 +40,8 @@ class FaceCutter {
   void cut_ears(std::span<const glm::dvec3> p);
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  std::vector<std::uint32_t> ring_, reversed_;  ///< the corners from the smallest on, then its smaller neighbour
+  std::vector<std::uint32_t> ring_, reversed_;  ///< the corners from the smallest on, in both directions; `ring_` is
+                                                ///< the lexicographically smaller list
   std::vector<Ear> ears_;
   bool backwards_ = false;  ///< `ring_` has the opposite direction to the given list
   glm::dvec3 area_{0};      ///< twice the area vector of `ring_`

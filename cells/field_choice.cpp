@@ -204,11 +204,12 @@ FieldChoice no_array(std::span<const FieldSummary> fields, bool shape) {
   if (!shape)
     none.notes.emplace_back("the file has no field: every point has the value 1");
   else if (fields.empty())
-    none.notes.emplace_back("the file has no field: its shape is drawn, with lighter near parts");
+    none.notes.emplace_back(
+        "the file has no field: its shape is drawn, and parts near the default view's eye are lighter");
   else
     none.notes.push_back(
-        fmt::format("only labels and indices vary among its fields: its shape is drawn, with lighter near parts; "
-                    "`field` draws one of {}",
+        fmt::format("only labels and indices vary among its fields: its shape is drawn, and parts near the default "
+                    "view's eye are lighter; `field` draws one of {}",
                     list(fields)));
   return none;
 }
@@ -373,7 +374,7 @@ void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const s
                    const std::string& source) {
   if (choice.component != magnitude || requested.ends_with(":mag") || requested.ends_with(":magnitude")) return;
   throw scene::bad_input(
-      fmt::format("{}: '{}' has colors of {} components, which are not drawn as colors; choose one component with "
+      fmt::format("{}: '{}' has colours of {} components, which are not drawn as colours; choose one component with "
                   "`field` {}:0 (red), or their length with {}:mag",
                   source, field.name, field.components, field.name, field.name));
 }

@@ -56,9 +56,9 @@ bool looks_like_noise(const FieldSummary& field);
 /// Resolves ReadOptions::field. Names take precedence over syntax: "a:b" is the array of that name if it exists; a name
 /// of both a point and a cell array selects the point array. If `requested` is empty, the choice is, in this order: the
 /// file's active scalars if they vary; the first varying array among point scalars, point vectors, cell scalars, cell
-/// vectors, where fields that look like noise are considered only if nothing else varies; with a note, a short float
-/// array that would be ids by its values alone. If only labels vary, the first of them is chosen or, with `shape`
-/// (ReadOptions::shape), no array but the shape; the same applies if nothing varies. Throws Error(bad_input) listing
+/// vectors, where fields that look like noise are considered only if nothing else varies; a short float array that only
+/// its values suggest to be ids, with a note. If only labels vary or nothing varies, the choice is the first field
+/// (labels last) or, with `shape` (ReadOptions::shape), the shape instead of an array. Throws Error(bad_input) listing
 /// all names.
 FieldChoice choose_field(const std::string& requested, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape = false);

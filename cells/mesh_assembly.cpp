@@ -148,7 +148,7 @@ class Assembly {
     const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     std::vector<BlockTets> results(in_flight);
     std::size_t next = 0;
-    // A result is reused only after all other results have been begun; by then it has been appended.
+    // The pipeline has at most `in_flight` tasks at a time, so a result is reused only after it has been appended.
     const auto begin = [&](tbb::flow_control& flow) {
       if (next * cells_a_task >= count) flow.stop();
       return next++;
@@ -230,7 +230,7 @@ class Assembly {
     for (const Tet& t : tets) result_.mesh.tets.push_back({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])});
   }
 
-  /// In the mesh, of the current block.
+  /// Returns the index in the mesh of the current block's first point.
   [[nodiscard]] std::uint32_t first_point() const {
     return static_cast<std::uint32_t>(result_.mesh.positions.size() - points_.size());
   }
@@ -265,7 +265,8 @@ class Assembly {
   const HigherOrderPlan& plan_;
   std::span<const glm::dvec3> points_;  ///< of the current block
   std::uint64_t cells_before_ = 0;      ///< of the previous blocks
-  /// While all of the current block's tets are kept, usually to its end, they are not copied: the number so far.
+  /// Number of the current block's tets that have been kept without copying them. No value once a tet is not kept as
+  /// given.
   std::optional<std::size_t> as_given_;
   std::vector<double> values_;            ///< of all points so far, or of the block's cells
   std::vector<glm::dvec3> added_points_;  ///< of the current block

@@ -127,8 +127,8 @@ class HalfSpaceCut {
     return scalar;
   }
 
-  /// Returns -1 for a corner outside, 1 inside, and 0 on the plane, within the rounding of the distance. That depends
-  /// only on the corner, so that all tets that share the corner agree.
+  /// Returns -1 for a corner outside, 1 inside, and 0 on the plane, within the rounding of the distance. The result
+  /// depends only on the corner, so that all tets that share the corner agree.
   [[nodiscard]] std::int8_t side_of(const glm::dvec3& p) const {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const double d = distance(p);

@@ -13,7 +13,7 @@ namespace tessera::cells {
 /// their order, and those of one cell remain consecutive; unused vertices are dropped. Sets cells_out_of_range,
 /// cells_clipped, cells_cut and the new number of tets in `counts`. The mesh may be a part of another mesh, because the
 /// result for a tet depends only on the positions and values of its corners. Throws Error(bad_input) for a mesh that
-/// would have 2^32 vertices, and like validate().
+/// would have 2^32 vertices, and the errors of validate().
 void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts& counts, const std::string& source);
 
 /// Throws Error(bad_input) if the selection of a whole mesh is empty.

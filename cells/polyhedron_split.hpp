@@ -15,9 +15,9 @@ namespace tessera::cells {
 
 /// Splits polyhedra, one at a time, into tets that conform to those of the neighbouring cells.
 ///
-/// Faces     are cut by face_triangles.hpp, using only the positions of their corners, and never get points of their
-///           own. So neighbours agree on shared faces whatever the indices, order and orientation of the corners, and
-///           whatever kind of cell (cell_split.hpp, cells/amr/amr_cells.hpp) is on the other side.
+/// Faces     are cut by face_triangles.hpp, using only the positions of their corners, and never get additional
+///           points. So neighbours agree on shared faces whatever the indices, order and orientation of the corners,
+///           and whatever kind of cell (cell_split.hpp, cells/amr/amr_cells.hpp) is on the other side.
 /// Corners   that coincide are merged.
 /// Cells     are cones from their smallest corner, which for tets, pyramids, wedges and hexahedra gives the result of
 ///           split_cell(). If that corner does not see the whole cell, they are cones from another corner or an inner

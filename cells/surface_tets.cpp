@@ -111,8 +111,8 @@ void SurfaceTets::take_measures(const Triangles& part) {
   }
 }
 
-/// Returns six times the volume that the cone from `apex` has on the wrong side; once that exceeds `enough`, any larger
-/// number.
+/// Returns six times the volume that the cone from `apex` has on the wrong side. The sum stops as soon as it exceeds
+/// `enough`.
 double SurfaceTets::wrong_side(const Triangles& part, const glm::dvec3& apex, double enough) const {
   double wrong = 0;
   for (const CornerTriangle& t : part) {
@@ -217,7 +217,8 @@ void SurfaceTets::fill_part(const Triangles& part) {
   fill_overlapping(part);
 }
 
-/// Fills parts that edges of exactly two triangles connect, one by one, if there are several and each has a volume.
+/// Divides the part at edges with more than two triangles and fills the pieces one by one. Returns false if there is
+/// only one piece, or if a piece is a void.
 bool SurfaceTets::split_apart(const Triangles& part) {
   const std::vector<Triangles> parts = parts_on_edges(part);
   if (parts.size() < 2) return false;

@@ -63,7 +63,7 @@ void warp(MeshBlocks& read, const std::optional<Warp>& request, const std::strin
     for (const std::string& name : point_vectors(read))
       if (by.vector.empty() && is_displacement_name(name)) by.vector = name;
   if (by.vector.empty()) return;
-  if (!read.fields.empty())  // for blocks with a single field; see MeshBlocks
+  if (!read.fields.empty())  // the reader has loaded only the chosen field (MeshBlocks::fields)
     throw scene::bad_input(
         fmt::format("{}: `warp`: a mesh with levels of refinement cannot be moved; leave `warp` out", source));
   std::size_t moved = 0;

@@ -188,7 +188,9 @@ Draft draft_values(const DefaultField& field, const std::array<double, 2>& range
     draft.space = table.space;
     draft.name = fmt::format("{} over {:.6g} to {:.6g}, {}", table.name, r.low, r.high, how);
   }
-  if (r.has_ground) draft.name += fmt::format(", {:.0f} % of it below {:.4g} clear", 100 * r.ground_share, r.ground);
+  if (r.has_ground)
+    draft.name +=
+        fmt::format(", transparent in the {:.0f} % of the volume below {:.4g}", 100 * r.ground_share, r.ground);
   return draft;
 }
 

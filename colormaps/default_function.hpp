@@ -24,16 +24,15 @@
 ///           body      another patient (MR): background clear, dark red to ivory values
 ///           otherwise (`values`): cool-warm
 /// Range   of `body` and `values`: between the 0.5 and 99.5 % quantiles of the volume without the background; symmetric
-///         about zero if each side of zero extends beyond 0.3 of the other. An end within 1e-6 of the range's width
-///         from zero becomes zero. Values outside the range have the colours of its ends.
+///         about zero if each side of zero extends beyond 0.3 of the other. An end whose distance from zero is at most
+///         1e-6 of the range's width becomes zero. Values outside the range have the colours of its ends.
 /// Ground  of a grid: if at least a third of the volume has values in one 32nd of the range next to its low end, that
 ///         end is background, up to where values become rare. It is clear.
 /// Opacity each 24th of the range, except the ground, absorbs about the same in total: opacity is proportional to the
 ///         inverse of the volume with these values, to the power 0.8. It increases by a factor of 3 towards the high
 ///         end, or, if the range is symmetric about zero, towards both ends.
 /// Scale   all opacities are scaled so that the mean opacity of pixels that show anything is 0.4, with at most one
-/// pixel
-///         in 200 above 0.97, seen along those axes of the box that are normal to its larger faces (PilotPixels).
+///         pixel in 200 above 0.97, seen along those axes of the box that are normal to its larger faces (PilotPixels).
 ///         Uses only the samples: no image is rendered.
 namespace tessera::colormaps {
 

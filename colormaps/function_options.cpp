@@ -51,7 +51,8 @@ bool is_far_off(const std::array<double, 2>& function, const std::array<double, 
   if (!(width > 0) || !std::isfinite(width) || !std::isfinite(span)) return false;
   const double overlap = std::min(function[1], field[1]) - std::max(function[0], field[0]);
   if (overlap >= 0.01 * width) return width < 0.01 * span;
-  // A threshold inside the range is narrow, too, but separates the values on its two sides.
+  // A function that covers only a narrow part inside the field's range may be a threshold, which separates the values
+  // on its two sides, so it is allowed.
   return function[0] <= field[0] + 0.01 * width || function[1] >= field[1] - 0.01 * width;
 }
 

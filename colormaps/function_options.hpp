@@ -34,8 +34,9 @@ struct TransferFunctionOptions {
   /// `--opacity-points`: pairs of a fraction of the range and an opacity per unit distance, ascending. They replace the
   /// opacities of a preset or a colour map.
   std::vector<std::array<double, 2>> opacity_points{};
-  /// Maps a file over 0 to 1 or -1 to 1, like ParaView's presets, to the field's range as with `rescale` if the field
-  /// is almost entirely outside of the file's range or fills only a hundredth of it.
+  /// Applies to files whose values are from 0 to 1 or from -1 to 1, like those of ParaView's presets. Such a file is
+  /// mapped to the field's range as with `rescale` if the field is almost entirely outside of the file's range or fills
+  /// only a hundredth of it.
   bool rescale_presets = false;
 
   [[nodiscard]] std::array<double, 2> spanned() const { return range.value_or(field_range); }

@@ -22,7 +22,7 @@ class PilotPixels {
   /// Returns the factor on extinction that makes the mean opacity of pixels with alpha > 1/255 equal to `mean_alpha`.
   /// The factor is smaller if otherwise more than one in 200 of these pixels would have an alpha above 0.97. If these
   /// pixels are less than 0.15 of all pixels, the target is 0.6 `mean_alpha`, because the visible parts are then
-  /// smaller than the estimated pixels and appear too faint in them. 1 if no factor makes anything visible.
+  /// smaller than the estimated pixels and appear too faint in them. Returns 1 if no factor makes anything visible.
   [[nodiscard]] double scale(double mean_alpha) const;
 
  private:

@@ -18,7 +18,8 @@ double clamped_midpoint(const OpacityPoint& p) { return std::clamp(p.midpoint, 1
 
 /// Returns the position of x between low and high, as a fraction.
 double fraction(double x, double low, double high) {
-  // high - low may overflow, while halves of the smallest doubles are zero.
+  // Large numbers are halved, because high - low may overflow. Others are not, because halves of the smallest doubles
+  // are zero.
   const double scale = std::max(std::abs(low), std::abs(high)) > 1e300 ? 0.5 : 1;
   return (x * scale - low * scale) / (high * scale - low * scale);
 }
@@ -105,7 +106,8 @@ class Refiner {
   void refine(double begin, double end) {
     const Span<ColorPoint> colors(curves_.colors, begin, end);
     const Span<OpacityPoint> opacities(curves_.opacities, begin, end);
-    // The piece determines which side of a step is used; a fraction may have been rounded.
+    // The side of a step is determined by the beginning of the piece, because a fraction at the step may have been
+    // rounded to the other side.
     const bool step = opacities.a->sharpness > step_sharpness && opacities.a != opacities.b;
     const double level =
         step && begin < middle(*opacities.a, *opacities.b) ? opacities.a->opacity : opacities.b->opacity;
@@ -125,8 +127,8 @@ class Refiner {
     Sample at_u = exact(0);
     emit(begin, at_u);
     while (u < 1) {
-      // Finds the longest chord from u within the tolerance, to an eighth. Chords shorter than the smallest step are
-      // not useful.
+      // Finds the length of the longest chord from u within the tolerance, with an error of at most an eighth. Chords
+      // shorter than the smallest step are not useful.
       constexpr double smallest_step = 1.0 / (1 << 16);
       double good = std::min(smallest_step, 1 - u), bad = 2 - u;
       for (double trial = std::min(last_step * 1.5, 1 - u); bad > good * 1.125;) {

@@ -22,7 +22,7 @@ exchange::MessageReader tiles_of(const exchange::Message& message) {
   return reader;
 }
 
-/// A tile's deep samples, if it has any.
+/// Reads a tile's deep samples, if it has any, and adds them to `to` unless `to` is null.
 void take_deep(exchange::RecordReader& reader, const scene::PixelRect& rect, DeepCollector* to) {
   const auto count = reader.take<std::uint64_t>();
   if (count == 0) return;
@@ -143,7 +143,7 @@ void ImageAssembly::start(Frame& frame, std::function<void()> work) {
       const std::lock_guard lock(mutex_);
       if (fault && !fault_) fault_ = fault;
       --frame.working;
-      changed_.notify_all();  // under the lock, because without it this object may already be destroyed
+      changed_.notify_all();  // under the lock: once the lock is released, this object may be destroyed
     }
     if (fault) std::rethrow_exception(fault);
   };

@@ -23,8 +23,8 @@
 /// assembles the image. exchange/message.hpp describes their messages, on channel `tiles`.
 namespace tessera::compositor {
 
-/// Sends the finished tiles that a compositor has of one frame, in messages of about 128 KiB. May be used by any
-/// thread; each thread packs its own tiles. Tiles that this rank sends to itself are not packed.
+/// Sends a compositor's finished tiles of one frame, in messages of about 128 KiB. May be used by any thread; each
+/// thread packs its own tiles. Tiles that this rank sends to itself are not packed.
 class TileSender {
  public:
   TileSender(exchange::Transport& transport, int assembler, std::uint32_t frame);

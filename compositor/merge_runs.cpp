@@ -58,7 +58,7 @@ class RunMerger final : public TileMerger {
   void advance(double final_depth) override {
     const bool all = final_depth == std::numeric_limits<double>::infinity();
     if (!all) {
-      // Runs that remain are stored: a stream could not keep them in order.
+      // A stream cannot keep the runs behind `final_depth` for later, so the runs of all streams are stored in `runs_`.
       for (const Stream& stream : streams_) push_runs(stream);
       streams_.clear();
       in_streams_ = 0;
@@ -103,8 +103,8 @@ class RunMerger final : public TileMerger {
     float opacity_to_reach = 0;
   };
 
-  /// An ascending part, which is read pixel by pixel, in parallel with other parts. Its single segments are not read
-  /// here.
+  /// An ascending part, which is read pixel by pixel, in parallel with other parts. The stream skips single segments,
+  /// which push_records() reads.
   struct Stream {
     explicit Stream(const exchange::TilePart& part)
         : records(part.records), reader(records.bytes()), tile(part.tile), segments(part.segments) {
@@ -200,12 +200,12 @@ class RunMerger final : public TileMerger {
     return at;
   }
 
-  /// Records whether cells overlap: a run begins before the previous run ends. Neither order of the two is then right.
-  /// A wrong order changes a pixel by at most the product of their opacities.
+  /// Records that cells overlap if this run begins before the previous run ends. Neither order of the two runs is then
+  /// correct. A wrong order changes a pixel by at most the product of the runs' opacities.
   void note_overlap(const Run& run, Pixel& pixel) const {
     constexpr double negligible = 1e-7, rounding = 0x1p-20;
-    // On the lattice, ends that should agree differ by some steps if one of two cells was projected in double
-    // precision.
+    // On the lattice, the back of one run and the front of the next may differ by some steps, although their cells
+    // share a face, if one of the cells was projected in double precision.
     const double steps =
         context_.lattice != nullptr ? 2 * projection::back_end_steps * context_.lattice->depth_unit : 0;
     const double within = steps + rounding * run.thickness + 0x1p-40 * std::abs(run.front);
@@ -216,7 +216,7 @@ class RunMerger final : public TileMerger {
     if (back > pixel.reach) pixel.reach = back, pixel.opacity_to_reach = run.opacity;
   }
 
-  /// Integrates runs of one segment, with the same bits as the projector of the segment would.
+  /// Integrates runs that consist of one segment. The result has the same bits as if the projector had integrated them.
   void integrate_single() {
     if (single_.empty()) return;
     batch_.reserve(single_.size());
@@ -265,7 +265,7 @@ class RunMerger final : public TileMerger {
   std::uint64_t budget_;
   scene::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<Pixel> pixels_;  ///< used after an advance() before the last one has composited runs
+  std::vector<Pixel> pixels_;  ///< empty until an advance() that is not the last one has runs to composite
   /// For each pixel, the run that arrived last; each run links to the previous one.
   std::vector<std::uint32_t> first_of_;
   std::vector<Run> runs_;

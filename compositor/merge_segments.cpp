@@ -24,8 +24,8 @@ scene::Error malformed(std::uint32_t tile) {
           fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
 }
 
-/// Merges segments. The sinks that sort, integrate and composite segments in a single process do the same here. A
-/// derived class for each kind of record adds the segments to the stores.
+/// Merges segments with the sinks that also sort, integrate and composite segments in a single process. A derived class
+/// for each kind of record adds the segments to the stores.
 template <class Encoding>
 class SegmentMerger : public TileMerger {
  public:

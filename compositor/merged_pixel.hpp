@@ -31,7 +31,7 @@ struct MergedPixel {
   }
 };
 
-/// Returns an image of a tile of that size; `pixels` are ordered row by row.
+/// Returns the image of a tile of size `size`; `pixels` are ordered row by row.
 inline scene::Image image_of(const std::vector<MergedPixel>& pixels, scene::ImageSize size) {
   scene::Image image(size);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].write(image, i);

@@ -35,7 +35,7 @@ class PictureSink final : public TileSink<Encoding> {
   TilePixels<Encoding> pixels_;
   ImageWindow window_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< segments taken: in finished rectangles; in this rectangle
 };
 
 /// Writes the values of the pixels of `rect` to the window's image.

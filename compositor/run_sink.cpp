@@ -21,8 +21,8 @@ double planar_depth(const TileScene& scene, std::int64_t step) {
   return scene.lattice.depth(static_cast<double>(step));
 }
 
-/// Writes a run's record to `to` and returns its end. The record is written field by field, because copying a record
-/// that was assembled in memory would wait for its own stores.
+/// Writes a run's record to `to` and returns its end. The record is written field by field: if it were assembled in
+/// memory first, the processor could not copy it before the stores of its fields are complete.
 std::byte* write_run(const TileScene& scene, const WindowState::Run& run, std::byte* to) {
   const auto put = [&](const auto& value) {
     std::memcpy(to, &value, sizeof value);
@@ -79,8 +79,7 @@ void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exc
   }
 }
 
-/// Writes the runs directly from the state. This is possible in most rectangles, in which no ray ends a run before the
-/// end.
+/// Writes the runs directly from the state. This is possible in most rectangles: no ray in them has more than one run.
 void write_only_runs(const TileScene& scene, const WindowState& state, exchange::PartWriter& writer) {
   const scene::PixelRect& rect = writer.rect();
   exchange::Bytes& out = writer.records();

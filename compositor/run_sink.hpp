@@ -10,8 +10,8 @@ namespace tessera::compositor {
 /// no other process has a segment inside a run, and compositing the run here is exact. A convex part of a mesh sends
 /// one fragment per pixel, whatever its number of cells.
 ///
-/// Runs without light and optical depth are not sent, and a run begins where it first becomes visible. Pixels that
-/// become opaque by the cells of this process are closed.
+/// Runs that have neither light nor optical depth are not sent, and a run begins where it first becomes visible. Pixels
+/// that become opaque by the cells of this process are closed.
 template <class Encoding>
 class RunSink final : public FragmentSink<Encoding> {
  public:
@@ -26,8 +26,8 @@ class RunSink final : public FragmentSink<Encoding> {
   void begin_tile(std::size_t tile, const scene::PixelRect& rect) override;
   void start(const scene::PixelRect& rect) override;
   void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) override;
-  /// After this, runs are shorter, and no pixel of the rectangle is closed: segments that hide it may belong behind
-  /// segments that come later.
+  /// After this call, runs are shorter, and no pixel of the rectangle is closed: segments that make the pixel opaque
+  /// may belong behind segments that come later.
   bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) override;
   [[nodiscard]] const typename Encoding::Open& open() const override { return pixels_.open(); }
   [[nodiscard]] bool any_open() const override { return pixels_.any_open(); }

@@ -64,7 +64,7 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
   const projection::CellNormals* normals_;
 };
 
-/// Does not sort segments, because the compositor sorts them: always copies all segments.
+/// Always sends all segments of the store, unsorted, because the compositor sorts them.
 template <>
 class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
  public:

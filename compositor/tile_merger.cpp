@@ -16,7 +16,8 @@ void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, dou
   const std::uint64_t bytes_a_step = std::min<std::uint64_t>(budget_bytes / 20, 1 << 20);
   std::uint64_t added = 0;
   for (const exchange::TilePart& part : parts) {
-    // Behind final_depth, projectors that have no part in this list may still send fragments.
+    // The merger must not advance beyond final_depth: projectors without a part in this list may still send fragments
+    // behind it.
     if (added >= bytes_a_step && std::isfinite(part.start_depth)) {
       merger.advance(std::min(part.start_depth, final_depth));
       added = 0;

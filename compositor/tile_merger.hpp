@@ -40,7 +40,7 @@ struct MergeContext {
   const scene::Lattice* lattice = nullptr;
   const integrals::LaneTable* table = nullptr;  ///< table on that lattice
   scene::Trace* trace = nullptr;
-  // For a device (gl_merger.hpp), which needs a table and units (in `lattice`) for all frames:
+  // For a device (gl_merger.hpp). It needs `table` and `lattice` also for frames that are not on the lattice:
   GlCompositor* device = nullptr;
   bool on_lattice = true;  ///< false: `lattice` contains device_units()
   std::uint32_t frame = 0;
@@ -54,7 +54,8 @@ struct MergeContext {
   /// Lighting of the matter of a mesh, computed by the CPU; null: none.
   const projection::MatterLight* light = nullptr;
 
-  /// An upper bound of the light that can be behind a transmittance of 1.
+  /// An upper bound of the light that a ray can still collect while its transmittance is 1
+  /// (integrals::opacity_weight()).
   [[nodiscard]] double opacity_weight() const {
     const double brightest = light != nullptr ? light->brightest(max_color) : max_color;
     const double weight = integrals::opacity_weight(brightest, longest_ray, emission);

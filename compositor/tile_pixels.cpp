@@ -30,7 +30,7 @@ void light_crossings(const scene::SurfaceSet& surfaces, std::span<const Crossing
   for (const auto& [at, crossing, value] : crossings) {
     const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine, value);
     batch.red[at] = light.red, batch.green[at] = light.green, batch.blue[at] = light.blue;
-    batch.optical_depth[at] = -std::log1p(-light.opacity);  // infinite where it is opaque
+    batch.optical_depth[at] = -std::log1p(-light.opacity);  // infinite if the surface is opaque
     batch.transmittance[at] = 1 - light.opacity;
   }
 }
@@ -110,8 +110,8 @@ void ListPixels::add(const Lists& lists, double final_depth) {
       const bool absorbs = batch_.optical_depth[k] > 0;
       bool appears = absorbs && run.optical_depth == 0 && std::isinf(run.front);
       if constexpr (runs) {
-        // Light without optical depth (independent emission) does not share a fragment with absorption behind it: the
-        // fragment's front is where absorption begins.
+        // A run of light without optical depth (independent emission) ends where absorption begins, because the front
+        // of an absorbing fragment is the depth at which absorption begins.
         if (run.begun && (run.back != segments.front[i] || (absorbs && run.optical_depth == 0 && run.visible())))
           end(run);
         run.begun = true;

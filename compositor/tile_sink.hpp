@@ -37,10 +37,10 @@ class TileSink {
   /// 32 x 32 pixels that is aligned to multiples of 32.
   virtual void start(const scene::PixelRect& rect) = 0;
 
-  /// Takes the final segments in each pixel's order, and removes them from the store. Final are segments whose key (the
-  /// front, or the back in lists ordered by the back) is less than `final_depth`, because no later segment may precede
-  /// them. Also removes the segments of closed pixels. On the lattice, lists with fewer than `at_least` segments may
-  /// stay for later. The time is added to the stages `sort`, `integrate` and `composite` (sinks of fragments: `pack`).
+  /// Takes the final segments in each pixel's order, and removes them from the store. A segment is final if its key
+  /// (the front, or the back in lists ordered by the back) is less than `final_depth`: no later segment may precede it.
+  /// Also removes the segments of closed pixels. On the lattice, lists with fewer than `at_least` segments may stay for
+  /// later. The time is added to the stages `sort`, `integrate` and `composite` (sinks of fragments: `pack`).
   virtual void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) = 0;
 
   /// Takes all segments because the store cannot grow any further, although later segments may come between them; all

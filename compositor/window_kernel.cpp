@@ -27,8 +27,8 @@ using sorting::HWY_NAMESPACE::has_row;
 using sorting::HWY_NAMESPACE::PixelList;
 using sorting::HWY_NAMESPACE::segment_at;
 
-/// Transposes four segments, in every fourth lane of four vectors, to their fields in registers: this takes a quarter
-/// of the time of gathers. Segment i of vector k goes to lane 4 i + k.
+/// Each vector contains whole segments, each in four consecutive elements. Transposes four such vectors to one vector
+/// per field, in a quarter of the time of gathers. Segment i of vector k goes to lane 4 i + k.
 HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
   const hn::RepartitionToWide<DI> wide;
@@ -40,7 +40,8 @@ HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
           BitCast(df, InterleaveLower(wide, high01, high23)), BitCast(df, InterleaveUpper(wide, high01, high23))};
 }
 
-/// Loads `lanes` / 4 of the segments of load_segments(): those of lanes first, first + 4, first + 8...
+/// Loads `lanes` / 4 whole segments into one vector: those that load_segments() needs for lanes first, first + 4, first
+/// + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
@@ -53,7 +54,7 @@ HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const 
   }
 }
 
-/// Loads one segment into every lane. Its slot is counted from list[lane].
+/// Loads one segment per lane. The slot of a lane's segment is counted from list[lane].
 HWY_INLINE SegmentLanes load_segments(const projection::LatticeSegment* list, const std::int32_t* slots) {
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
@@ -168,7 +169,7 @@ class PixelGroup {
   }
 
  private:
-  /// Whether some lane has not become visible yet.
+  /// Whether the pixel of some lane has no visible segment yet.
   HWY_INLINE bool some_unseen() const {
     const DI d;
     return !AllFalse(d, Load(d, &state_.first_back[pixel_]) == Set(d, no_key));
@@ -179,7 +180,7 @@ class PixelGroup {
   /// Keeps in the windows, in order, the sorted segments that were not final. Returns the number of removed segments.
   HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
     const DI d;
-    // Lanes beyond the last pixel share their memory with other lists.
+    // The memory of lanes beyond the last pixel belongs to other lists, so nothing is written there.
     const std::size_t lanes = hn::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
     std::uint32_t* counts = windows_.counts() + pixel_;
     const VI count = this->count();
@@ -190,8 +191,8 @@ class PixelGroup {
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
     const auto gone = static_cast<std::uint64_t>(GetLane(SumOfLanes(d, count - left)));
     if (most == 0) return gone;
-    // Each lane uses the same number, so that no branch depends on one: elements that do not belong to a lane are after
-    // the end of its list.
+    // All lanes copy the same number of elements, so that no branch depends on the lane. Surplus elements are stored
+    // after the end of the lane's list.
     alignas(64) std::int32_t first[most_lanes];
     Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);

@@ -74,10 +74,11 @@ double first_visible_depth(const scene::Lattice& lattice, const projection::Latt
                            const class integrals::SegmentIntegrator& integrator);
 
 /// The layers of the pixels of a square (integrals/ray_layers.hpp). The state of a pixel is the light of its current
-/// layer. Segments that bring the transmittance to the layer's end, and thick ones, are added in double precision.
+/// layer. Segments in which the layer ends, and segments with an alpha above `most_alpha`, are added in double
+/// precision.
 class WindowLayers {
  public:
-  /// Before the last layer, lanes do not add segments with more alpha (compositor/deep/layer_sink.hpp).
+  /// In all layers but the last, lanes do not add segments with a larger alpha (compositor/deep/layer_sink.hpp).
   static constexpr float most_alpha = 0.5f;
 
   /// A segment that lanes do not add.
@@ -92,12 +93,12 @@ class WindowLayers {
   WindowLayers& operator=(const WindowLayers&) = delete;
   virtual ~WindowLayers() = default;
 
-  /// Adds these segments to the pixels, whose state is that in front of the segments. Updates the state and the numbers
-  /// below.
+  /// Adds these segments to their pixels, to which all segments in front of them have been added. Updates the state and
+  /// the arrays below.
   virtual void add(std::span<const End> ends) = 0;
 
-  /// The transmittance at which the current layer of a pixel ends, and that below which the pixel is closed. Only the
-  /// last layer, which never ends, closes the pixel.
+  /// `end_at`: the transmittance at which the current layer of a pixel ends; `least`: the pixel is closed below this
+  /// transmittance. Only the last layer, which never ends, closes the pixel.
   alignas(64) std::array<double, WindowState::pixels> end_at, least;
   /// The last visible segment of the layer. `last_back` is WindowState::not_yet before there is one.
   alignas(64) std::array<std::int32_t, WindowState::pixels> last_front, last_back;
@@ -113,16 +114,16 @@ struct WindowRules {
   WindowLayers* layers = nullptr;               ///< if not null, the state of a pixel is that of its current layer
 };
 
-/// A run ends if the front of the next segment is further from the back of the run than this. The depths of neighbours
-/// have the same bits, except where double precision was used for an edge-on cell: then they differ by a few steps of
-/// 2^-30 of half the mesh's depth.
+/// A run ends if the front of the next segment is more than this number of steps from the back of the run. At a shared
+/// face, the depths of two cells have the same bits, unless double precision was used for a cell that is seen edge-on:
+/// they then differ by a few steps. A step is 2^-30 of half the mesh's depth.
 constexpr std::int32_t touching_steps = 64;
 
 /// Sorts, integrates and composites, in each pixel's order, all segments of the windows whose front is before
 /// `final_step`, and removes them, one pixel per lane. If `at_least` is not 1, a group of pixels is left for later in
-/// two cases: if none of its lists has `at_least` segments; and, unless one of its lists is full, if all are shorter
-/// than twice the number of rows that were not final the last time. Returns the number of removed segments, including
-/// those left out behind opaque segments.
+/// two cases. Either all its lists have fewer than `at_least` segments, or no list is full and all are shorter than
+/// twice the number of rows that were not final the last time. Returns the number of removed segments, including those
+/// left out behind opaque segments.
 ///
 /// Order: front, back, then the scalars. Segments that are equal in all of these are interchangeable, so the bits of
 /// the pixels do not depend on processes, partitions or threads. In a mesh whose cells do not overlap, only segments of

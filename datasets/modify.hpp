@@ -16,7 +16,7 @@ namespace tessera::datasets {
 scene::TetMesh transformed(scene::TetMesh mesh, double scale, const glm::dvec3& offset);
 
 enum class Orientation { all_inverted, every_other_inverted };
-/// Returns the same tets with two vertices swapped, which makes them left-handed.
+/// Swaps two vertices of all tets, or of every other tet, which inverts their orientation.
 scene::TetMesh inverted(scene::TetMesh mesh, Orientation orientation = Orientation::all_inverted);
 
 /// Converts point data to cell data: the average over each run of `tets_per_cell` tets (1: every tet; 6: the voxels of
@@ -44,8 +44,8 @@ enum class Partition {
                 ///< nor connected
 };
 /// Divides a mesh into disjoint parts whose union is the mesh; some parts may be empty. Each part keeps the order of
-/// its tets, has only the vertices that it uses, and stores in original_cell each tet's index in the whole mesh (or the
-/// whole's own original_cell).
+/// its tets, has only the vertices that it uses, and stores in original_cell each tet's index in the whole mesh (or, if
+/// the whole mesh has an original_cell, that of the tet).
 std::vector<scene::TetMesh> parts(const scene::TetMesh& mesh, int count, Partition partition, std::uint64_t seed);
 
 /// Returns one mesh of all parts, part after part, without merging vertices. Original cells are kept if all parts have

@@ -14,7 +14,8 @@ scene::Knot random_knot(Random& random, double value, double extinction) {
   scene::Knot knot;
   knot.value = value;
   for (int i = 0; i < 3; ++i) knot.color[i] = random.uniform();
-  // Squared, so that most knots are thin and a few are thick, as in functions drawn by hand.
+  // The number is squared, so that most knots have a low extinction and a few a high one, as in functions drawn by
+  // hand.
   const double u = random.uniform();
   knot.extinction = random.below(4) == 0 ? 0 : extinction * u * u;
   return knot;

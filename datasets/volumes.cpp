@@ -65,7 +65,7 @@ class ComputedVolume final : public scene::SampleSource {
         }
   }
 
-  /// Converts a value by way of the stored type, so that every reader sees the same number.
+  /// Converts a value first to the volume's stored type, then to `type`, so that every reader gets the same number.
   void put(double value, scene::SampleType type, std::byte* to) const {
     if (top_ == 0) {
       const auto stored = static_cast<float>(value);

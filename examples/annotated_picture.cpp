@@ -16,8 +16,8 @@ int main(int argc, char** argv) try {
   annotation.outline = tessera::Outline{};
   annotation.scale_bar = tessera::ScaleBar{};
   annotation.texts = {{data.source(), tessera::Place::top}};
-  annotation.style.background = glm::dvec3(1);  // what write_image() puts behind it below
-  validate(annotation, function);               // says what is wrong with it before anything is rendered
+  annotation.style.background = glm::dvec3(1);  // write_image() below uses the same background
+  validate(annotation, function);               // throws if the annotation is not valid, before rendering
 
   auto frame = tessera::Session(data).render(view, function);
   tessera::write_image(tessera::annotation_layer(frame.image, annotation, view, data.bounds(), function), "layer.png");

@@ -4,12 +4,12 @@
 
 #include "tessera/tessera.hpp"
 
-/// A client that has gone after `wanted` pixels.
+/// A client that requests a stop after it has received `wanted` pixels.
 class Client : public tessera::Sink {
  public:
   explicit Client(long wanted) : wanted_(wanted) {}
   void tile(const tessera::Tile& tile) override {
-    pixels += tile.rect.area();  // here they would be sent
+    pixels += tile.rect.area();  // a real client would send the pixels here
     ++tiles;
     if (pixels >= wanted_) gone.request_stop();
   }

@@ -14,7 +14,7 @@ namespace tessera::exchange {
 namespace {
 
 constexpr auto kind = MessageKind::attempt_end;
-/// How long it may take until a thread that waits on one channel notices an end that came on another channel.
+/// Longest time until a thread that waits on one channel notices an end message that came on another channel.
 constexpr std::chrono::milliseconds slice(50);
 
 bool is_end(const Bytes& message) {
@@ -74,7 +74,7 @@ class AttemptTransport final : public Transport {
   }
   [[nodiscard]] Traffic sent(Channel channel) const override { return beneath_.sent(channel); }
 
-  /// Ends this rank's part: waits for the ends of all other ranks, and receives all remaining messages.
+  /// Ends this rank's part: waits for the end messages of all other ranks, and receives all remaining messages.
   void settle() {
     {
       const std::lock_guard lock(mutex_);
@@ -94,10 +94,10 @@ class AttemptTransport final : public Transport {
   }
 
  private:
-  /// A rank that left earlier might send a message to another rank that still waits for a third rank's end; that rank
-  /// would discard the message as a leftover. Therefore every rank, once it has all ends, sends a second end to rank 0,
-  /// and leaves when rank 0 answers with one. This uses the channel of agreement, where all messages come from rank 0
-  /// or go to it, so that no message overtakes another.
+  /// Ensures that no rank continues while another rank still waits for end messages: the waiting rank would discard
+  /// messages of the continuing rank as leftovers. Every rank that has all end messages sends a second one to rank 0,
+  /// and leaves when rank 0 answers. The channel is `agreement`: all its messages come from rank 0 or go to it, so that
+  /// no message overtakes another.
   void leave_together() {
     const Bytes message = end_message();
     if (rank() != 0) {
@@ -153,7 +153,7 @@ class AttemptTransport final : public Transport {
   mutable std::mutex mutex_;
   std::atomic<bool> failed_ = false;
   bool ended_ = false;
-  int settled_ = 0;  ///< on rank 0: the number of other ranks that have all ends
+  int settled_ = 0;  ///< on rank 0: the number of other ranks that have all end messages
   std::optional<scene::Error> own_error_;
   std::vector<std::optional<scene::Error>> errors_;  ///< one per rank
   /// For each channel, one flag per rank: whether the rank has ended on the channel.

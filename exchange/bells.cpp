@@ -7,7 +7,7 @@
 namespace tessera::exchange {
 namespace {
 
-/// A bell has a cache line of its own.
+/// Each bell has a separate cache line.
 struct alignas(64) Bell {
   std::atomic<std::uint32_t> rung = 0;
 };

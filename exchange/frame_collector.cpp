@@ -40,11 +40,10 @@ const FrameCollector::Tile& FrameCollector::tile(std::uint32_t number) const {
 
 void FrameCollector::begin(int projector, const FrameBegin& begin, std::span<const std::byte> bits) {
   if (begin.tiles != tiles_.size())
-    throw scene::Error(
-        scene::ErrorCode::system_failure,
-        fmt::format("exchange: projector {} has {} tiles for a compositor of {}; all ranks must be given "
-                    "the same arguments",
-                    projector, begin.tiles, tiles_.size()));
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("exchange: projector {} announces {} tiles to a compositor that has {}; all ranks "
+                                   "must be given the same arguments",
+                                   projector, begin.tiles, tiles_.size()));
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     Tile& tile = tiles_[i];
     if (tile.final_depth.empty()) tile.final_depth.assign(static_cast<std::size_t>(projectors_), -infinity);
@@ -92,8 +91,8 @@ FrameCollector::Waiting FrameCollector::take(std::uint32_t number) {
   from.merged_to = all ? infinity : final_depth(from);
   std::stable_sort(from.parts.begin(), from.parts.end(),
                    [](const TilePart& a, const TilePart& b) { return a.start_depth < b.start_depth; });
-  // A part that begins deeper than the depth to which other projectors are complete stays unmerged: unmerged, it takes
-  // a fifth of the memory.
+  // A part that begins deeper than the depth to which other projectors are complete stays unmerged, because an unmerged
+  // part takes only a fifth of the memory.
   const auto ahead = std::find_if(from.parts.begin(), from.parts.end(), [&](const TilePart& part) {
     return !all && part.start_depth >= from.merged_to && std::isfinite(part.start_depth);
   });

@@ -33,8 +33,8 @@ class FrameCollector {
 
   /// Parts of a tile that wait to be merged.
   struct Waiting {
-    std::vector<TilePart> parts;  ///< ascending by `start_depth`: a part may be merged once all segments before its
-                                  ///< `start_depth` have been
+    std::vector<TilePart> parts;  ///< ascending by `start_depth`: a part may be merged once all segments in front of
+                                  ///< its `start_depth` have been merged
     double final_depth;           ///< the tile is complete up to this planar depth; infinity: complete
     bool all;                     ///< whether no more parts will come
   };
@@ -46,9 +46,10 @@ class FrameCollector {
   void finish(std::uint32_t tile);
   [[nodiscard]] bool finished() const;  ///< whether all tiles are composited and all ends have arrived
 
-  /// Records that the bytes of a part must be returned to its projector. They are withheld while the part is ahead: its
-  /// tile comes after the first tile that is not composited, or the part begins deeper in that first tile than the
-  /// depth to which all projectors are complete. pay() returns the bytes that are due now.
+  /// Records that the bytes of a part must be returned to its projector. The bytes are due once all tiles up to the
+  /// part's tile are composited. They are due earlier if all tiles before the part's tile are composited, and the part
+  /// does not begin behind the depth to which all projectors have completed its tile. pay() returns the number of bytes
+  /// that are due.
   void owe(int projector, std::uint32_t tile, double start_depth, std::uint64_t bytes);
   std::uint64_t pay(int projector);
 

@@ -20,8 +20,8 @@ using tessera::StallSettings;
 /// Eight times per timeout, every rank sends a heartbeat to rank 0, and rank 0 sends a heartbeat to each rank. Any
 /// other message counts as a heartbeat. Heartbeats come from the thread that calls MPI. So a rank that computes for
 /// hours is not considered silent, but a rank whose process or machine has stopped is. Rank 0 watches all other ranks.
-/// The other ranks watch rank 0, and the lowest of them that still runs reports the silence of rank 0: rank r waits r
-/// quarters of a second longer, and reports nothing if another rank has.
+/// The other ranks watch rank 0, and the lowest of them that still runs reports the silence of rank 0: rank r
+/// waits 0.25 r seconds longer, and reports nothing if another rank has reported the silence.
 ///
 /// This class only keeps records: the caller transfers the messages and passes the current time.
 class Heartbeats {
@@ -39,9 +39,10 @@ class Heartbeats {
   /// returned.
   std::vector<Outgoing> turn(Clock::time_point now);
 
-  /// Records that another message than a heartbeat has come from rank `from`.
+  /// Records that a message other than a heartbeat has come from rank `from`.
   void heard(int from) { watch_.heard(from); }
-  /// Takes a message that another rank's turn() returned. Throws Error(system_failure) if `bytes` are not one.
+  /// Takes a message that another rank's turn() returned. Throws Error(system_failure) if `bytes` are not such a
+  /// message.
   void take(int from, const Bytes& bytes);
 
   /// The rank whose silence ends the run, and the error with which the run ends. Only with StallSettings::ends_run.

@@ -27,27 +27,27 @@ inline constexpr std::uint16_t wire_version = 33;        ///< incremented whenev
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
-  begin = 1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver, in its order, lowest first: 1: parts follow
-  parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,    ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
+  begin = 1,    ///< u64 frame, FrameBegin, bits (lowest first), one per tile of the receiver: 1: parts follow
+  parts = 2,    ///< u64 frame; repeated: PartHeader, `bytes` bytes of records
+  end = 3,      ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
   packet = 51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty: pixels (packed_pixels.hpp)
                 ///< and, if kept, f32 error estimates row by row
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,      ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
-                  ///< unless that is 0: u32 samples of each pixel, scene::DeepImageSample each
-  region = 6,     ///< RegionHeader (frame/grid/region_gather.cpp), list of its rectangles; unless stopped, for each:
-                  ///< pixels (packed_pixels.hpp) of 64 rows at a time and, if kept, f32 error estimates row by row
-  deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
+  tiles = 5,   ///< u64 frame; repeated: u64 tile, its pixels (packed_pixels.hpp), u64 number of deep samples in the
+               ///< tile; unless that is 0: u32 number of samples of each pixel, all samples (scene::DeepImageSample)
+  region = 6,  ///< RegionHeader (frame/grid/volume_frames.hpp), list of rectangles; unless stopped, for each rectangle:
+               ///< pixels (packed_pixels.hpp) of 64 rows at a time and, if kept, f32 error estimates row by row
+  deep_rows = 7,  ///< u64 number of samples of each pixel of the sender's rows, all samples (scene::DeepImageSample)
   // Channel frames.
   frame_left = 8,  ///< nothing: a frame has been assembled
   // Channel stop.
   stop = 9,  ///< u64 number of the run to stop; 0, which a rank sends to itself: the run is over
   // Channel mesh.
-  mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
-  cell_keys = 61,    ///< u8: 1: the sender's last; list of u64: cells (frame/ranks/shared_repetitions.cpp)
-  cell_ranges = 11,  ///< u64 first cell, u64 cells, f32 lowest value of each, f32 highest
+  mesh_chunk = 10,  ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
+  cell_keys = 61,  ///< u8: 1: the sender's last message; list of u64 keys of cells (frame/ranks/shared_repetitions.cpp)
+  cell_ranges = 11,  ///< u64 first cell, u64 number of cells; f32 lowest, then f32 highest value of each cell
   // Channel timing.
   clock_question = 12,  ///< nothing
   clock_answer = 13,    ///< f64 microseconds of the sender's clock
@@ -60,26 +60,26 @@ enum class MessageKind : std::uint16_t {
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty on ranks without one
   read_in_parts = 21,     ///< u8: 1: all projectors read parts of the file
-  field_tallies = 22,     ///< u64 fields; for each: a field, NumberTally, u8 blocks_count_up; f64 box of higher-order
-                          ///< cells[6], texts of block names
-  part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
-                          ///< words of used points
-  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, texts of notes, of blocks, of surfaces,
-                          ///< text format, u64 time steps, u64 step, list of f64 times, f64 axis scale[3], text field,
-                          ///< u8 association
+  field_tallies = 22,     ///< u64 number of fields; for each field: the field, NumberTally, u8 blocks_count_up; then
+                          ///< f64[6] box of the higher-order cells, texts: block names
+  part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts: notes on reading, notes on cells,
+                          ///< surfaces; u64 size of used_points
+  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 number of fields, fields, texts: notes, names of
+                          ///< blocks, names of surfaces; text format, u64 time steps, u64 step, list of f64 times,
+                          ///< f64[3] axis scale, text field, u8 association
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64
   tet_table = 28,         ///< list of u64: for each projector, how many tets or messages this rank has for it
   longest_edge = 29,      ///< f32
-  frames_complete = 30,   ///< u64 complete frames; for a mesh also u64, 1 if the other frames are to be rendered again
+  frames_complete = 30,   ///< u64 complete frames; for a mesh also u64: 1: the other frames must be rendered again
   sink_failed = 31,       ///< u8: 1: rank 0's sink threw an exception
   cell_totals = 32,       ///< f64 lowest, f64 highest, u64 blank samples
-  row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
-  column_costs = 34,      ///< the same as row_costs, with a list of u64 for each requested row of the map
-  seconds = 35,           ///< f64 processor time of the last frame, or for each thread (frame/grid/sort_first.cpp)
+  row_costs = 33,         ///< i32 x0, y0, x1, y1 of a region of the map; list of u64: one sum per row of the region
+  column_costs = 34,      ///< the region as in row_costs; for each requested map row, a list of u64: one sum per column
+  seconds = 35,           ///< f64 processor time of the last frame, in total or per thread (frame/grid/sort_first.cpp)
   of_job = 36,            ///< list of bytes: defined by the caller (tessera/job.hpp)
-  higher_order = 37,      ///< u64[128]: numbers of tets, by deviation (cells/curved/higher_order_plan.hpp), or the
+  higher_order = 37,      ///< u64[128] numbers of tets, by deviation (cells/curved/higher_order_plan.hpp); or the
                           ///< difference between two images (api/queries/higher_order.cpp)
   process_on_host = 38,   ///< name and process of a rank (exchange/one_line.cpp)
   arguments = 58,         ///< list of bytes: the arguments of the sender (first_contact.cpp)
@@ -93,17 +93,17 @@ enum class MessageKind : std::uint16_t {
   machine = 53,      ///< text: the machine on which the sender can share memory; empty: none (shared_pages.cpp)
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine; -1: none
   pages_seen = 55,   ///< u8: 1: the sender has opened the pages
-  tile_times = 59,   ///< u8: 1: the last frame was not stopped; u64 process, f64 its processor time, list of TileTime
-  image_split = 60,  ///< u8: 1: list of i32 rows, for each a list of i32 columns, then for each a list of i32 steps; 0:
-                     ///< list of f64 weights of the ranks, empty: keep the present weights
+  tile_times = 59,   ///< u8: 1: the last frame was not stopped; u64 process, f64 time of the process, list of TileTime
+  image_split = 60,  ///< u8: 1: list of i32 rows, for each row a list of i32 columns, then for each row a list of i32
+                     ///< steps; 0: list of f64 weights of the ranks, empty: keep the present weights
   volume_facts =
       57,           ///< what the sender has read of a volume, and where its samples are (frame/grid/shared_volume.cpp)
-  files_read = 64,  ///< until the end: text name, u64 bytes, u64 checksum (api/same_files.cpp)
+  files_read = 64,  ///< repeated: text name, u64 bytes, u64 checksum (api/same_files.cpp)
   volume_labels = 63,  ///< u8 whether values are labels, list of f64: the labels (frame/grid/shared_labels.cpp)
   // Channel fragments, from a rank to itself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.
-  attempt_end = 49,  ///< u8 ErrorCode, 0 without error, text: the sender's last message of this attempt (attempt.hpp)
+  attempt_end = 49,  ///< u8 ErrorCode (0: no error), text; the sender's last message of this attempt (attempt.hpp)
   // Internal to the transport.
   fault = 41,    ///< from a rank to rank 0: the rank's error: u8 ErrorCode, text
   verdict = 42,  ///< from rank 0 to all: the run's error: u8 ErrorCode, text

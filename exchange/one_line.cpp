@@ -76,7 +76,7 @@ bool share_one_line(Transport& transport) {
     if (other.host != self.host) continue;
     Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;
     if (others != nullptr) shared = others;
-    break;  // all ranks use that of the lowest rank
+    break;  // all ranks of a machine use the Spoken of its lowest rank
   }
   if (shared != nullptr) spoken = shared;
   return with_first;

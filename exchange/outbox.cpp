@@ -144,7 +144,7 @@ bool Outbox::must_wait(std::uint32_t tile) const {
   for (const Lane& lane : lanes_) backlog += lane.waiting;
   if (backlog <= settings_.backlog_bytes) return false;
   if (unfinished_.empty() || unfinished_.front() < tile) return true;
-  // The tile is the first unfinished one, or has just ended: only its own compositor can delay it.
+  // The tile is the first unfinished one, or has just ended: only the compositor of this tile can make put() wait.
   const Lane& lane = lanes_[static_cast<std::size_t>(map_->owner(tile))];
   return lane.waiting > std::max<std::uint64_t>(settings_.window_bytes, message_bytes);
 }
@@ -226,8 +226,8 @@ void Outbox::end_frame(FrameEnd sums) {
   told.waiting += message.size();
   told.ready.push_back(std::move(message));
   drain(told);
-  // The next frame's tiles must not overtake this frame's. Otherwise put() for a first tile would wait for a lane that
-  // still has old tiles.
+  // The next frame's tiles must not overtake this frame's. Otherwise put() for the first tile of the next frame would
+  // wait for a lane that still has tiles of this frame.
   const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(frame_));
   const auto is_sent = [&] {
     return std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.ready.empty(); });

@@ -18,9 +18,9 @@ namespace tessera::exchange {
 /// compositors of the tiles, in tile order, in messages of about 256 KiB, while projection continues.
 ///
 /// Flow control. A compositor grants every projector a window of bytes. It returns the bytes of a part once the part's
-/// tile is finished or is the compositor's first unfinished tile. So a projector is ahead of the others by at most the
-/// window, and a slow compositor holds at most N windows and one tile. Bytes that cannot be sent wait in the outbox,
-/// and put() blocks when they exceed the backlog.
+/// tile is finished or is the compositor's first unfinished tile. So a projector is ahead of the others by at most its
+/// window, and a slow compositor stores at most the windows of N projectors and one tile. Bytes that cannot be sent
+/// wait in the outbox, and put() blocks when they exceed the backlog.
 ///
 /// No deadlock. Order all tiles by (frame, tile). Every projector starts its tiles and streams to a compositor in this
 /// order, so the parts of a compositor's first unfinished tile are always covered by credit. And put() for a

@@ -20,7 +20,7 @@ namespace tessera::exchange {
 constexpr std::size_t columns = 16, channels = 5, color_channels = 4;
 constexpr std::size_t word_bytes = columns * sizeof(std::uint32_t);
 
-/// A band of an image's columns.
+/// A band of up to 16 columns of an image.
 template <class Float>
 struct PixelBand {
   Float *rgba, *depth;  ///< pixels begin here: the band's first pixel
@@ -32,7 +32,7 @@ struct PixelBand {
 /// A position in the streams of a rectangle.
 template <class Byte>
 struct Streams {
-  Byte *words, *last;    ///< the first 16 words, and the last 16 that may be read
+  Byte *words, *last;    ///< first and last group of 16 words that may be accessed
   std::size_t bits = 0;  ///< position in each stream
   [[nodiscard]] Byte* word() const { return words + bits / 32 * word_bytes; }
   [[nodiscard]] int shift() const { return static_cast<int>(bits % 32); }

@@ -35,7 +35,7 @@ class SharedPages {
   ~SharedPages();
 
   /// Allocates memory for the bytes [first, last). Without this call, memory is allocated when the bytes are first
-  /// written, which ends the process if memory runs out. Returns whether the allocation succeeded.
+  /// written; if memory runs out, the system then ends the process. Returns whether the allocation succeeded.
   bool reserve(std::size_t first, std::size_t last) const;
   /// Maps the pages. Returns false if this process has no address space for them.
   bool map();

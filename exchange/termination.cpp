@@ -34,8 +34,9 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
     setitimer(ITIMER_REAL, &soon, nullptr);
     return;
   }
-  // The launcher ends all ranks and waits for none. A signal from any other process may be meant for this rank alone:
-  // the first signal makes the run end in an orderly way, a second signal ends this rank at once.
+  // The launcher sends the signal to all ranks and waits for none, so this rank ends at once. A signal from any other
+  // process may be meant for this rank alone: the first signal makes the run end in an orderly way, a second signal
+  // ends this rank at once.
   const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
   if (signal == SIGTERM && !from_launcher && !asked_to_end.exchange(true)) return;
   if (!is_ending && speaks_for_the_lost && may_speak()) {
@@ -56,7 +57,7 @@ pid_t parent_of(pid_t process) {
 }
 
 /// Returns the processes that may send SIGTERM to all ranks at once: the parent and, if the launcher started a script,
-/// the launcher itself. The launcher puts the processes that it starts into a process group of their own.
+/// the launcher itself. The launcher puts the processes that it starts into a separate process group.
 std::array<pid_t, 2> find_launchers() {
   const pid_t group = getpgrp();
   pid_t outside = getppid();

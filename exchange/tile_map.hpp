@@ -6,10 +6,10 @@
 
 namespace tessera::exchange {
 
-/// Assigns tiles to compositors: each sequence of P tiles in scanline order goes to the P compositors in a random order
-/// of its own (Juliachs et al. 2007, section 3). This spreads neighbouring tiles, which tend to be equally full,
-/// evenly. The random order is determined by a seed, and is the same on every rank and in every run. The image does not
-/// depend on it.
+/// Assigns tiles to compositors: in scanline order, each group of P successive tiles goes to the P compositors in a
+/// random order, chosen separately for each group (Juliachs et al. 2007, section 3). This spreads neighbouring tiles,
+/// which tend to be equally full, evenly. The random order is determined by a seed, and is the same on every rank and
+/// in every run. The image does not depend on it.
 class TileMap {
  public:
   TileMap(std::size_t tiles, int compositors, std::uint64_t seed);

@@ -59,8 +59,7 @@ struct FrameBegin {
   double longest_ray;   ///< upper bound of the world length of a ray inside the whole mesh
   std::uint64_t tiles;  ///< number of bits that follow, one per tile
   float longest_edge;   ///< longest edge of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
-  std::uint32_t stopped = 0;  ///< 1: the projector was stopped: it sends no parts of this frame, though its cells are
-                              ///< visible
+  std::uint32_t stopped = 0;  ///< 1: the projector was stopped: it has visible cells in this frame, but sends no parts
   std::uint64_t on_lattice = 0;  ///< 1: the frame's segments are on the lattice that box and range determine
   scene::Box box{};              ///< of the whole mesh
   std::array<double, 2> scalar_range{};
@@ -82,7 +81,7 @@ static_assert(sizeof(PartHeader) == 32);
 
 /// Touching segments of a pixel, composited. No segment of another process can be between them.
 struct RunRecord {
-  double front;            ///< planar depth where extinction first becomes positive (or light, if there is none)
+  double front;            ///< planar depth where extinction, or light if there is no extinction, becomes positive
   float thickness;         ///< back - front
   float red, green, blue;  ///< linear light that leaves the front, not attenuated by what is in front of it
   float opacity;        ///< stored instead of the transmittance: for an opacity of 1e-8, 1 - 1e-8 would be rounded to 1

@@ -23,11 +23,10 @@ void Buffer::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   const auto most = static_cast<std::size_t>(context_->limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   if (use_ == Use::device && bytes > most)
-    throw scene::Error(
-        scene::ErrorCode::system_failure,
-        fmt::format("{}: {} bytes of ray segments at once, its shaders reach {}; make `tile_size` smaller, or use "
-                    "`backend` cpu",
-                    context_->name(), bytes, most));
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("{}: {} bytes of ray segments are needed at once, but its shaders can access only "
+                                   "{}; make `tile_size` smaller, or use `backend` cpu",
+                                   context_->name(), bytes, most));
   release();
   const Functions& gl = context_->gl();
   std::size_t room = std::bit_ceil(std::max<std::size_t>(bytes, 4096));

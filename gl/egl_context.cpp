@@ -105,7 +105,8 @@ class EglContext final : public Context {
         hardware.push_back(i);
     }
     if (wanted.number && (*wanted.number < 0 || *wanted.number >= count))
-      throw scene::bad_input(fmt::format("`egl_device` {}: there are {}, counted from 0", *wanted.number, count));
+      throw scene::bad_input(
+          fmt::format("`egl_device` {}: there are {} devices, counted from 0", *wanted.number, count));
     if (wanted.hardware_only && hardware.empty()) throw no_egl("no hardware device answers");
     const std::vector<int>& among = hardware.empty() ? all : hardware;
     const auto turn = static_cast<std::size_t>(wanted.local_rank.value_or(0)) % among.size();

@@ -16,9 +16,10 @@ enum class Platform {
 /// Selects one of EGL's devices. Devices are numbered in EGL's own order.
 struct EglDevice {
   std::optional<int> number;      ///< this device
-  std::optional<int> local_rank;  ///< else: round-robin over hardware devices (over software devices if there are none)
+  std::optional<int> local_rank;  ///< used if `number` is not set: round-robin over hardware devices (over software
+                                  ///< devices if there are none)
   bool hardware_only = false;     ///< refuse software devices
-  // If none of the members is set, the first hardware device is used, or else the first device.
+  // If no member is set, the first hardware device is used, or, without hardware devices, the first device.
 };
 
 }  // namespace tessera::gl

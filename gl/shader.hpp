@@ -44,8 +44,8 @@ class Program {
 };
 
 /// Returns the first error of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12)
-/// : error ...", other drivers "ERROR: 0:12: ...". Their lines are counted through the version line and all files (Mesa
-/// does not support #line FILE).
+/// : error ...", other drivers "ERROR: 0:12: ...". The line numbers in these logs count the version line and the lines
+/// of all files of the stage (Mesa does not support #line FILE).
 std::string first_complaint(std::string_view log, const std::vector<ShaderSource>& files);
 
 }  // namespace tessera::gl

@@ -42,7 +42,7 @@ class StageTimer {
   std::binary_semaphore numbered_{0}, ended_{0};
   std::uint32_t row_ = 0;
   std::int32_t frame_ = -1;
-  double offset_us_ = 0;  ///< what to add to the device's clock to get the trace's
+  double offset_us_ = 0;  ///< the trace's clock minus the device's clock
   std::vector<GLuint> queries_;
   std::size_t used_ = 0;
   std::vector<Stage> recorded_;

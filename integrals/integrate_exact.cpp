@@ -66,8 +66,8 @@ HWY_INLINE V thin_zeroth(V a, V b) {
   return MulAdd(q4, number(1.0 / 24), MulAdd(q3, number(-1.0 / 6), MulAdd(q2, number(0.5), number(1.0) - q1)));
 }
 
-/// Upper bound of the number of pieces of a segment: one per interval, and those from cutting thick pieces. The
-/// transmittance of each piece that was cut is at most exp(-1), so few pieces suffice until the rest is negligible.
+/// Upper bound of the number of pieces of a segment: one per interval, and the pieces that are cut from thick ones. The
+/// transmittance of each cut piece is at most exp(-1), so the rest of the segment is negligible after a few pieces.
 template <class Table>
 std::size_t most_pieces(const Table& table) {
   constexpr std::size_t thick = 64;

@@ -16,8 +16,8 @@ double channel_of(const scene::Knot& knot, int channel) {
   return channel == 0 ? knot.extinction : knot.color[channel - 1];
 }
 
-/// The function at one position of its knots: `below` when approached from below, `above` from above. They differ at a
-/// step.
+/// The function at one position of its knots: `below` when approached from below, `above` from above. The two differ at
+/// a step.
 struct Place {
   double position;
   scene::Knot below, above;
@@ -89,7 +89,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps, emission);
   knot_count = places.size();
-  // There are about four cells per knot, so that evenly spaced knots have one cell each.
+  // There are at least four cells per knot, so that no two evenly spaced knots are in the same cell.
   std::vector<float> knots;
   knots.reserve(knot_count);
   for (const Place& place : places) knots.push_back(static_cast<float>(place.position));

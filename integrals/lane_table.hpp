@@ -26,8 +26,8 @@ enum class StepRounding {
 /// A transfer function as a table for float lanes (integrate_lanes-inl.h).
 ///
 /// Intervals The K distinct positions of the knots separate K + 1 intervals, on each of which extinction and colour are
-///           linear. The first and the last interval are constant. A step is where two adjacent intervals disagree; it
-///           has no interval of its own, and its value is that of the interval above.
+///           linear. The first and the last interval are constant. A step is an edge at which the two adjacent
+///           intervals have different values; at the step, the function has the value of the upper interval.
 /// Units     Scalars are results of lane_scalar(); lengths are in `length_unit` world units. Extinction is stored
 ///           multiplied by length_unit, and so is colour under independent emission, so that scenes of size 1e-20 or
 ///           1e20 are in the range of a float.
@@ -68,13 +68,13 @@ struct LaneTable {
 
   std::size_t knot_count;  ///< K
   scene::Emission emission;
-  double color_unit;        ///< the colour that a number 1 in the rows of colours stands for
+  double color_unit;        ///< the colour that the number 1 represents in the rows of colours
   bool has_clear;           ///< whether there is an interval that neither absorbs nor emits
   std::size_t stride;       ///< elements per row of `rows`
   std::vector<float> rows;  ///< column_count rows
   /// Indexed by edge, 1 to K: the least and largest value of the knots rounded to that edge.
   std::vector<std::array<double, 2>> edge_values;
-  /// Indexed by edge, 1 to K: whether exactly one step of the function is there, and no other knots.
+  /// Indexed by edge, 1 to K: whether the edge is exactly one step of the function, without other knots.
   std::vector<std::uint8_t> is_step;
   /// Indexed by edge, 1 to K: whether a knot between the first and the last knot at the edge absorbs or emits. Lanes
   /// cannot resolve the width of such a peak.

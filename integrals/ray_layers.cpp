@@ -29,7 +29,7 @@ RayLayers::RayLayers(const scene::TransferFunction& function, scene::Emission em
       layers_(peel.layers) {}
 
 /// Calls visit(u0, u1, extinction_0, extinction_1), front to back, for each piece of a stretch between knots of the
-/// transfer function, with positions from 0 to 1 along the stretch, until it returns false.
+/// transfer function, with positions from 0 to 1 along the stretch, until `visit` returns false.
 template <class Visit>
 void RayLayers::visit_pieces(const Stretch& stretch, const Visit& visit) const {
   const double s0 = stretch.scalar_front, s1 = stretch.scalar_back;

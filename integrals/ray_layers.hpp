@@ -35,9 +35,9 @@ struct OpenLayer {
 /// Rendering", Computer Graphics Forum 25 (3), 2006). In these papers a ray advances in steps, and a layer ends with
 /// the step that brings its opacity to the threshold. Here, a layer ends at the exact position, anywhere in a stretch.
 ///
-/// Cut       A layer ends where the optical depth since the last cut is -log(1 - threshold), or less by at most a part
-///           in 1e12. Between knots of the transfer function the optical depth is a parabola in the position, whose
-///           root is known in closed form. The parts are integrated again separately.
+/// Cut       A layer ends where the optical depth since the last cut is -log(1 - threshold), or smaller by a relative
+///           error of at most 1e-12. Between knots of the transfer function the optical depth is a parabola in the
+///           position, whose root is known in closed form. The parts are integrated again separately.
 /// Surface   A surface has no interior to cut. A surface that brings the opacity to the threshold or beyond belongs to
 ///           the layer in front of the cut, and ends this layer.
 /// Last      The last of Peel::layers layers is not cut: it contains the rest of the ray.

@@ -25,11 +25,12 @@ namespace tessera::integrals {
 /// are below 1e-8. Integration ends where the transmittance falls below 1e-10.
 ///
 /// `auto` may use thicker pieces and end sooner (only for emission by absorption, where opacity bounds the light):
-///   - Because q' >= 0, q = D (w u + (1 - w) u^2) with w in [0, 2]. Over all w, the error of six points is at most
-///     6e-10, 4e-8, 5e-7, 3e-6, 3e-5 times 1 - exp(-D) for D = 1, 2, 3, 4, 6. The opacity that a ray accumulates is at
-///     most 1, so the error of all its pieces is at most that number times the largest colour.
-///   - Behind transmittance t, the remaining light is at most t times the largest colour, and the remaining opacity is
-///     at most t.
+///   - Because q' >= 0, q = D (w u + (1 - w) u^2) with w in [0, 2]. Over all w, the error of quadrature with six points
+///     is at most 6e-10, 4e-8, 5e-7, 3e-6, 3e-5 times 1 - exp(-D) for D = 1, 2, 3, 4, 6. The opacity that a ray
+///     accumulates is at most 1, so the error of all its pieces is at most this factor (6e-10 to 3e-5) times the
+///     largest colour.
+///   - Where the transmittance has fallen to t, the remaining light is at most t times the largest colour, and the
+///     remaining opacity is at most t.
 ///
 /// scene/error_budget.hpp defines the share of the error that each of these two may use.
 struct ExactPieces {
@@ -73,9 +74,9 @@ class SegmentIntegrator {
   double termination_error_;
 };
 
-/// Upper bound of the light or opacity behind a pixel of transmittance 1, for the worst channel of linear RGBA. Early
-/// termination compares the product of this bound and the transmittance to the allowed error. With independent
-/// emission, light grows with the length of the ray.
+/// Upper bound of the light or opacity that the rest of a ray can add, for the worst channel of linear RGBA, if nothing
+/// in front attenuates it. Early termination compares the product of this bound and the ray's transmittance to the
+/// allowed error. With independent emission, light grows with the length of the ray.
 double opacity_weight(double max_color, double longest_ray, scene::Emission emission);
 
 /// The `exact` integrator, and, with other limits of its pieces, the `auto` integrator.

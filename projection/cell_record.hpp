@@ -24,8 +24,8 @@ struct CellRecord {
     double depth;   ///< planar, world units
     double scalar;  ///< in the field's own unit; for cell data, the same at all four corners
   };
-  /// Largest magnitude of x and y, in pixels. Cells with corners beyond are treated like cells with corners in the eye
-  /// plane. Eight times the largest image's 2^16 would also work.
+  /// Largest magnitude of x and y, in pixels. Cells with corners beyond this limit are treated like cells with corners
+  /// in the eye plane. The largest image has 2^16 pixels per side; a limit of eight times this size would also work.
   static constexpr double reach = 0x1p17;
 
   Corner corner[4];
@@ -46,9 +46,9 @@ struct CellUnits {
   double key_origin, keys_per_depth;  ///< for depth keys: key = (planar depth - origin) * keys_per_depth
 };
 
-/// Makes the same segments by rasterize_planes(), for compositors whose device has failed. `take` receives the segments
-/// in batches, together with the cells of the batch; a segment's tet number is an index of these cells. Scalars are in
-/// the field's own unit.
+/// Makes the segments that a device would make, by rasterize_planes(), for compositors whose device has failed. `take`
+/// receives the segments in batches, together with the cells of the batch; a segment's tet number is an index of these
+/// cells. Scalars are in the field's own unit.
 void rasterize_records(std::span<const CellRecord> cells, const scene::PixelRect& rect, double pixels_per_tangent,
                        const std::function<void(const RaySegments&, std::span<const CellRecord>)>& take);
 

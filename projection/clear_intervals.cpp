@@ -63,12 +63,12 @@ ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emi
     if (i == knots.size()) break;
     const scene::Knot& next = knots[i];
     const double low = above(at.value), high = below(next.value);
-    if (low > high) continue;  // the two are neighbours: there is no double between them
+    if (low > high) continue;  // the two values are neighbours: there is no double between them
     if (!shows(at) && !shows(next)) {
       add(low, high, true);
     } else if (!shows(at) && clear_at(low)) {
       add(low, clear_at(high) ? high : last_where(low, high, clear_at), true);
-    } else if (shows(at) && clear_at(high)) {  // also if `next` shows: rounding loses 1e-16 of `at`'s extinction
+    } else if (shows(at) && clear_at(high)) {  // even a visible `next` may vanish: rounding loses 1e-16 of `at`
       add(clear_at(low) ? low : above(last_where(low, high, [&](double s) { return !clear_at(s); })), high, true);
     }
   }

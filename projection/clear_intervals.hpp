@@ -12,7 +12,8 @@ namespace tessera::projection {
 /// if one interval contains all of its scalars, which takes only a few comparisons.
 ///
 /// The intervals agree with TransferFunction::visible to the last bit: an interval ends where the interpolation, with
-/// its rounding, becomes zero, and intervals are not joined across a step that is visible only from below.
+/// its rounding, becomes zero, and intervals are not joined across a step if the function is visible just below the
+/// step.
 class ClearIntervals {
  public:
   struct Interval {

@@ -90,7 +90,8 @@ struct Covered {
   MF empty, sure;  ///< `empty` is set only with certainty
 };
 
-/// Ten times the rounding errors of a float pixel position, of what is added to it here, and of footprint()'s slack.
+/// Exceeds the rounding errors of a float pixel position and of the sums formed with it here, and is at least ten times
+/// footprint()'s slack.
 HWY_INLINE VF slack_of(VF pixel) { return MulAdd(Abs(pixel), Set(DF(), 0x1p-22f), Set(DF(), 1e-6f)); }
 
 HWY_INLINE Covered covered(VF least, VF most, VF side) {

@@ -50,7 +50,7 @@ struct CullView {
   /// All cells are unsure: depths exceed the range of float, or there are too many tiles for places.
   bool nothing_sure;
   float near_low, near_high, far_low, far_high;  ///< bounds of near and far depth, relative to the origin
-  float depth_slack;  ///< upper bound by which a vertex may exceed its CullVertex::depth, at depth 0
+  float depth_slack;                             ///< upper bound of the exact depth where CullVertex::depth is 0
   float width, height;
   float inverse_tile_size, columns;
 };

@@ -15,9 +15,9 @@ namespace tessera::projection {
 /// is relative to the depth extent of the cell, although a ray's path through a thin cell may be a hundred-thousandth
 /// of this extent.
 ///   - A single crossing of a ray and a face may have an error of most_error, in any cell.
-///   - The errors of successive crossings of a ray are random. A ray passes about as many cells of a kind as have an
-///     optical depth of one together. So a cell's error^2 may be most_error_squared times the optical depth of the
-///     cell.
+///   - The errors of successive crossings of a ray are random. Cells that contribute to a pixel have a total optical
+///     depth of about one along a ray. So the square of a cell's error may be most_error_squared times the cell's
+///     optical depth.
 ///   - Errors below least_error are harmless, even if there are a thousand of them.
 struct DepthLimits {
   // The unit of these errors is that of a pixel's value.

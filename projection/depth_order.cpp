@@ -23,13 +23,13 @@ HWY_INLINE std::uint32_t key_of(const TileEntry& e) {
   return bits ^ ((0u - (bits >> 31)) | 0x80000000u);
 }
 
-// If more entries than this are in an entry's step on average, the list is sorted completely: with more entries per
-// step, segments would wait too long in their windows.
+// If an entry's step has more entries than this, on average over all entries, the list is sorted completely: otherwise,
+// segments would wait too long in their windows.
 constexpr std::uint64_t crowd = 512;
 
 /// Radix sort, least significant digit first, over the digits in which keys differ.
 HWY_NOINLINE DepthOrder radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
-  constexpr int digit_bits = 11, digits = 3;  // three passes take less time than four with bytes
+  constexpr int digit_bits = 11, digits = 3;  // faster than four passes with digits of 8 bits
   constexpr std::uint32_t values = 1u << digit_bits;
   const auto digit_of = [](const TileEntry& e, int digit) { return key_of(e) >> digit * digit_bits & (values - 1); };
   std::uint32_t next[digits][values] = {};

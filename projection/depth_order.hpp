@@ -30,10 +30,10 @@ struct DepthOrder {
 /// is overwritten.
 ///
 /// The range between the list's nearest and farthest depth is divided into steps: one step for every two entries, at
-/// most 4096 steps. One counting pass sorts the entries by step; entries of one step keep their order. The only depth
-/// that a renderer needs is one before which no later entry can be, and a step is short compared to the cells whose
-/// segments wait for this depth. If many depths are in few steps, for example because of a distant outlier, a radix
-/// sort sorts them completely, in three counting passes.
+/// most 4096 steps. One counting pass sorts the entries by step; entries of one step keep their order. This order
+/// suffices: a renderer only needs a lower bound of the depths of all later entries, and a step is short compared to
+/// the cells whose segments wait for this bound. If many depths are in few steps, for example because of a distant
+/// outlier, a radix sort sorts them completely, in three counting passes.
 DepthOrder order_by_depth(std::span<TileEntry> entries, DepthOrderScratch& scratch);
 
 }  // namespace tessera::projection

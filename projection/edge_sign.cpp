@@ -84,7 +84,8 @@ LineOfSight line_of_sight(const PixelVertex& v, double pixels_per_tangent) {
 double sight_error(const PixelVertex& v, double pixels_per_tangent, double most_pixels) {
   if (pixels_per_tangent == 0) return 0;
   const double size = std::max(std::abs(v.x), std::abs(v.y)), w = std::abs(v.w);
-  // The limits are twice the half steps, because the values that are compared with them here have rounding errors, too.
+  // The bounds are whole steps, although rounding changes a position by half a step at most: the other half covers the
+  // rounding errors of the values that are compared here.
   if (size < 0.5 * beside_reach * w)
     return std::max(finest_step * w,
                     position_precision * std::max(size, std::min(pixels_per_tangent, most_per_tangent) * w));

@@ -70,8 +70,8 @@ void sort_ray(std::span<FaceMark> marks) {
   }
 }
 
-/// Returns the scalar at the fraction `part` of a segment. It is less than the scalar of the higher end, so that a part
-/// below a step of the transfer function keeps an end below the step.
+/// Returns the scalar at the fraction `part` of a segment. It is less than the scalar of the higher end, so that each
+/// part of a segment below a step of the transfer function has at least one end below the step.
 double scalar_between(double from, double to, double part) {
   if (from == to) return from;
   const auto [low, high] = std::minmax(from, to);

@@ -28,7 +28,8 @@ struct FaceMark {
 /// precision.
 ///
 /// A mark becomes a crossing among the segments (surface_crossings.hpp); the one process that owns the triangle inserts
-/// it. Every process cuts its own segments there, so that in depth order the crossing is between their parts.
+/// it. Every process cuts its own segments at the mark, so that in depth order the crossing is between the parts of a
+/// segment.
 ///
 /// Marks of a ray whose depths differ by no more than their tolerances are treated as one depth, for example where the
 /// ray passes through an edge or a corner. The order of these marks is that in which the ray, shifted as in
@@ -37,7 +38,7 @@ struct FaceMark {
 /// of a double:
 ///   - segments that end at the marks end at the depth itself;
 ///   - the marks follow, two units apart, and segments behind the marks begin two units behind the last mark;
-///   - a crossing of an iso-surface is one unit before the first mark of a larger number, or one unit behind the last
+///   - a crossing of an iso-surface is one unit before the first mark with a larger number, or one unit behind the last
 ///     mark.
 /// So runs of segments (compositor/run_sink.hpp) end at marks that another process owns. How a segment is cut depends
 /// only on the segment and the marks of its ray, which all processes have.

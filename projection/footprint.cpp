@@ -7,9 +7,9 @@
 namespace tessera::projection {
 namespace {
 
-/// Whether all corners are in the half space through the eye that is outside of one side of the window. `coordinate` is
-/// PixelVertex::x or ::y. q = coordinate - side * w is linear in the point, so neither a division nor the sign of w is
-/// needed.
+/// Whether all corners are outside of one side of the window, that is, beyond the plane through the eye and this side.
+/// `coordinate` is PixelVertex::x or ::y. q = coordinate - side * w is linear in the point, so neither a division nor
+/// the sign of w is needed.
 bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coordinate, double side, double sign) {
   return std::all_of(corners.begin(), corners.end(),
                      [&](const PixelVertex& v) { return sign * (v.*coordinate - side * v.w) > 0; });
@@ -19,7 +19,7 @@ bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coor
 /// than the rounding errors, including those of lines of sight (edge_sign.hpp).
 std::array<int, 2> covered(double least, double most, int low, int high) {
   const double slack = 1e-7, relative = 1e-9;
-  // Positions outside the window are outside by more than their rounding; infinite positions remain comparable.
+  // Clamps positions far outside the window, which may be infinite; they stay outside by more than the slack.
   least = std::clamp(least, low - 2.0, high + 2.0);
   most = std::clamp(most, low - 2.0, high + 2.0);
   const double first = std::ceil(least - 0.5 - (slack + relative * std::abs(least)));

@@ -15,7 +15,7 @@
 namespace tessera::projection {
 
 /// An array for large data that are written before they are read. It is not set to zero, and is kept from frame to
-/// frame. If it is at least half a huge page, it is on huge pages, where the system provides them on advice. (Page
+/// frame. An array of at least half a huge page is on huge pages if the system follows the advice to use them. (Page
 /// faults of 4 KiB cost as much as filling the array, and a processor's TLB has about a hundred entries, sixteen for
 /// stores.)
 template <class T>

@@ -14,7 +14,7 @@
 namespace tessera::projection {
 namespace {
 
-constexpr double nothing = MatterLight::nothing;  // scene/shading.hpp has the same for gradients
+constexpr double nothing = MatterLight::nothing;  // limit of a length, see matter_light.hpp
 
 /// A power with a whole exponent; takes a third of the time of std::pow.
 double whole_power(double base, int exponent) {
@@ -66,7 +66,7 @@ MatterLight::Light MatterLight::on(const glm::vec3& normal, const glm::dvec3& ra
   if (normal == glm::vec3(0)) return {};
   const glm::dvec3 n(normal), half = to_light_ - glm::normalize(ray);
   const double length = glm::length(half), n_l = std::min(std::abs(glm::dot(n, to_light_)), 1.0);
-  // A light exactly behind has no halfway vector.
+  // A light exactly behind the scene has no halfway vector.
   const double n_h = length > nothing ? std::min(std::abs(glm::dot(n, half)) / length, 1.0) : 0;
   const double shine = whole_shininess_ >= 0 ? whole_power(n_h, whole_shininess_) : std::pow(n_h, shading_.shininess);
   return {shading_.ambient + shading_.diffuse * n_l, shading_.specular * shine};

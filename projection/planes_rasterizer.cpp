@@ -39,9 +39,9 @@ template <int values>
 struct Cell {
   PixelVertex corner[4];
   double value[values][4];
-  /// Added to |E| before it is compared with the error bound: infinite for an edge without sides, whose ends project to
-  /// one point or which contains the eye. Its two faces are edge-on (pierceable = false), so its sign is not needed,
-  /// and it would be uncertain at every pixel.
+  /// Added to |E| before |E| is compared with the error bound. Infinite for an edge without sides, that is, an edge
+  /// that contains the eye or whose ends project to one point: its sign would be uncertain at every pixel and is not
+  /// needed, because the two faces at the edge are edge-on (pierceable = false).
   double certainty[6];
   bool pierceable[4];
   double pixels_per_tangent;  ///< as in ProjectedMesh
@@ -96,7 +96,7 @@ HWY_INLINE Cell<values> set_up(const ProjectedMesh& projected, std::uint32_t tet
 
 /// Returns |E| of a perspective edge that the ray meets, after an infinitesimal shift of the ray: the rate of change of
 /// E. A ray that meets a face whose plane contains the eye runs along this plane, where all three E are zero. These
-/// rates are then its weights, and the resulting depth is that of the eye.
+/// rates are then the weights of the face's corners, and the resulting depth is that of the eye.
 double magnitude_beside(const PixelVertex& from, const PixelVertex& to, double pixels_per_tangent) {
   const LineOfSight a = line_of_sight(from, pixels_per_tangent), b = line_of_sight(to, pixels_per_tangent);
   const double by_x = a.y * b.w - a.w * b.y, by_y = a.w * b.x - a.x * b.w;
@@ -128,8 +128,8 @@ HWY_NOINLINE void settle_signs(const Cell<values>& cell, const double* px, const
 }
 
 /// The position of an eye that is exactly on a vertex or an edge of the cell: value[from] + (value[to] - value[from]) *
-/// part. The ends of the edge are on one line through the eye, which is the origin of homogeneous space, on either side
-/// of the eye. So all their coordinates have the same ratio; the largest coordinate gives this ratio most accurately.
+/// part. The eye is the origin of homogeneous space, and the two ends of the edge are on opposite sides of the eye. So
+/// the ratio of the ends' coordinates is the same for x, y and w; the largest coordinate gives it most accurately.
 struct EyeOnEdge {
   int from = 0, to = 0;
   double part = 0;
@@ -280,7 +280,7 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const VD (&edge)[6], Cross
   }
 }
 
-/// The segments of the candidate pixels that have one.
+/// The segments of those candidate pixels whose rays pass through the cell.
 template <int values>
 struct Segments {
   MD hit;

@@ -61,12 +61,12 @@ struct RasterCounts {
 ///
 /// Processes cells from the beginning of `entries` while `out` has room for a whole rectangle more, and appends to
 /// `out`. Returns the number of processed cells (all if there is room; at least one if out.capacity() - out.size >=
-/// rect.area()). Bits do not depend on the rectangle. Signs, not depths, select the faces, because a maximum over the
-/// depths of planes would need a tie rule at every edge.
+/// rect.area()). The bits of a segment do not depend on the rectangle. Signs, not depths, select the faces, because a
+/// maximum over the depths of planes would need a tie rule at every edge.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts);
 
-/// Does the same, and stores projected.attribute at both ends of each segment.
+/// Does the same as the function above, and stores projected.attribute at both ends of each segment.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts);
 

@@ -45,8 +45,8 @@ struct RaySegments {
 };
 
 /// Ray segments with a second value in addition to the scalar. This attribute is linear in each cell; an example is the
-/// light that reaches the cell. It is a type of its own, so that rasterizer, store and sinks compiled for RaySegments
-/// are not affected.
+/// light that reaches the cell. It is a separate type, so that rasterizer, store and sinks compiled for RaySegments are
+/// not affected.
 struct AttributeSegments : RaySegments {
   std::vector<double> attribute_front, attribute_back;  ///< at entry and exit, in the attribute's own unit
 

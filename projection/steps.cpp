@@ -87,19 +87,19 @@ class Rule {
     return 1 + 2 * (steps_passed(steps_, high) - steps_passed(steps_, low));
   }
 
-  // planes_error: gradients, over 16 pixels in two directions, and the corner itself are rounded to a step of the
-  // lattice. float_error: the last place of a float. usual_part: two standard deviations of either error are less than
-  // half of the error.
+  // planes_error: in lattice steps; a corner's scalar and two gradients, each over 16 pixels, are rounded to integer
+  // steps. float_error: the last place of a float. usual_part: two standard deviations of either error are less than
+  // half of its bound.
   static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
 
-  /// If the scalar on a face changes by more than this number of errors, an error moves the line where a surface leaves
-  /// the face by less than 1/1024 pixel, in a cell of a hundred pixels.
+  /// If the scalars of a face differ by more than this number of errors, an error moves the line in which a surface
+  /// intersects the face by less than 1/1024 pixel, in a cell of a hundred pixels.
   static constexpr double most_slope = 1e5;
 
   static bool level(double low, double high) { return low == high; }
 
-  /// Whether a cell's scalars, with their errors, reach a magnified range. A single scalar is only rounded, and so
-  /// moves no further than to the end of a range.
+  /// Whether a cell's scalars, with their errors, reach a magnified range. If the cell has a single scalar, rounding
+  /// moves the scalar at most to the end of a range, so its error is not added.
   [[nodiscard]] bool reach_magnified(double low, double high) const {
     const double error = level(low, high) ? 0 : most_error_;
     return std::ranges::any_of(magnified_, [&](const scene::MagnifiedRange& range) {
@@ -130,7 +130,7 @@ class Rule {
     for (std::size_t i = 0; i < 4; ++i) s[i] = mesh_.scalars[corners[i]];
     for (const double scalar : s)
       if (std::abs(scalar - step.value) <= error) return true;
-    // A face has all corners but one, so its scalars extend from the lowest of all four, or to the highest.
+    // A face has three of the cell's corners, so its scalars include the lowest or the highest scalar of the cell.
     const auto order = [&](std::size_t i, std::size_t j) {
       const double low = std::min(s[i], s[j]), high = std::max(s[i], s[j]);
       s[i] = low, s[j] = high;

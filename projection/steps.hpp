@@ -22,7 +22,7 @@ namespace tessera::projection {
 /// A value at which the transfer function steps. A scalar that equals the value is on the upper side.
 struct Step {
   double value;
-  double contrast;  ///< upper bound of a pixel's change per world length that a ray is on the wrong side
+  double contrast;  ///< upper bound of a pixel's change per world length of ray on the wrong side
   enum class Kind { step, surface, range_end } kind = Kind::step;  ///< surface: the value of an iso-surface
 };
 
@@ -36,8 +36,8 @@ std::vector<Step> with_cuts(std::vector<Step> steps, const IsoView* iso,
 
 /// Cells in which rounded scalars would not determine accurately enough where rays cross a step. The segments of these
 /// cells must be cut at the steps (SplitRasterizer). The criterion is the error of a scalar, divided by the change of
-/// the scalar in the cell, times the change of a pixel if the whole ray were in cells like this. Cells that reach a
-/// magnified range are among them.
+/// the scalar in the cell, times the change of a pixel if the whole ray were in cells like this. Cells whose scalars
+/// reach a magnified range (scene::MagnifiedRange) are included.
 ///
 /// The result for a cell depends only on the cell's scalars and corners and on data that all processes share. So the
 /// segments of the cell have the same bits wherever it is projected.
@@ -69,8 +69,8 @@ class CellsAtSteps {
 template <class Segments>
 class SplitRasterizer {
  public:
-  /// Makes the same segments as rasterize_planes() for this cell and all of `rect`, but cut. They are valid until the
-  /// next call.
+  /// Makes the same segments as rasterize_planes() for this cell and all of `rect`, but cuts them at the steps. The
+  /// segments are valid until the next call.
   const Segments& rasterize(const ProjectedMesh& projected, std::span<const Step> steps, const TileEntry& entry,
                             const scene::PixelRect& rect, RasterCounts& counts);
 
@@ -85,7 +85,8 @@ extern template class SplitRasterizer<RaySegments>;
 extern template class SplitRasterizer<AttributeSegments>;
 
 /// Converts the scalars at the ends of a SplitRasterizer's segment to steps of the lattice, as floats that are on the
-/// same sides of all steps of the function as before. Scalars in a magnified range are moved.
+/// same sides of all steps of the function as before. Scalars in a magnified range are moved to the magnified copy of
+/// the range.
 struct LatticeScalars {
   float front, back;
 };

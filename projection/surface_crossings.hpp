@@ -64,7 +64,7 @@ inline Crossing crossing_of(float scalar_front) {
 
 /// The position of a segment's crossing on the lattice. Depths of a common face differ by some steps between a cell in
 /// double precision and a cell on the lattice. A crossing close to the back end is therefore moved `back_end_steps` in
-/// front of the back end, so that it is before all of the next cell's segment.
+/// front of the back end, so that it is in front of the next cell's entire segment.
 constexpr std::int32_t back_end_steps = 32;
 struct LatticePlace {
   std::int32_t depth;

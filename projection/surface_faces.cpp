@@ -48,8 +48,9 @@ double edge_error(const TriangleCorners& corners, const scene::PixelRect& box, d
 }
 
 /// Returns the largest change of an edge function by the rounding of orthographic pixel positions (PixelSpace). This
-/// rounding changes the depth of a plane if the plane is divided into other triangles. The error of a position is four
-/// times half of 2^-32 pixel, along an edge and along the distance to it.
+/// rounding changes the depth of a plane if the plane is divided into other triangles. The result is four times the
+/// rounding error of a position (2^-33 pixel), multiplied by the width plus the height of the triangle's box; the
+/// errors of an edge and of the distance from the edge contribute to it.
 double position_error(const TriangleCorners& c) {
   const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
   const auto [top, bottom] = std::minmax({c[0].y, c[1].y, c[2].y});

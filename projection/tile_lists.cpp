@@ -50,7 +50,8 @@ static_assert(PreparedMesh::block_tets == cull_block_cells);
 
 /// Blocks between two checks for a stop: 16,384 tets, less than a millisecond.
 constexpr std::size_t blocks_a_check = 256;
-/// no thread waits long for the last run, but few enough that their counters, one per tile each, stay below 32 MiB.
+/// Returns the number of runs of blocks: enough runs that no thread waits long for the last run, but few enough that
+/// the runs' counters, one per run and tile, stay below 32 MiB.
 std::size_t run_count(std::size_t blocks, std::size_t tiles) {
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t most = std::max<std::size_t>((std::size_t{8} << 20) / tiles, 1);
@@ -319,7 +320,8 @@ std::span<TileEntry> TileLists::tile(std::size_t tile) {
 }
 
 std::size_t TileLists::bytes() const {
-  // A member counts its share of a team's memory. Of its own arrays, too, it only ever touches its share.
+  // Each member of a team counts only its share of the buffers: the members share them, or the member uses only its
+  // share of its own buffers.
   const std::size_t members = team_ != nullptr ? static_cast<std::size_t>(team_->size()) : 1;
   return (buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
           buffers_->entries.bytes()) /

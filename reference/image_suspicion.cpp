@@ -50,16 +50,17 @@ class Picture {
 
   struct Misfit {
     float least = 0;  ///< smallest over the directions
-    float alike = 0;  ///< mean over spread, which is high if the directions are similar and the neighbours smooth
+    float alike = 0;  ///< ratio of mean to spread, which is high if the directions agree and the neighbours are smooth
   };
 
   /// Returns the deviation of the pixel from the cubic through its four neighbours along a line, for four directions.
-  /// Along a straight edge the smallest deviation is small; for a single wrong pixel all are similar. Differences up to
-  /// `least` are negligible.
+  /// Along a straight edge, the smallest of the four deviations is small; for a single wrong pixel, all four are
+  /// similar. Differences up to `least` are negligible.
   [[nodiscard]] Misfit misfit(int x, int y, float least) const {
     constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
     std::array<Colour, 4> off{};
-    Colour bend{};  // bend of the neighbours alone: nonzero at a step, but not around a single wrong pixel
+    Colour bend{};  // third difference of the neighbours, without the pixel: nonzero at a step, but not around a single
+                    // wrong pixel
     std::size_t count = 0;
     Misfit misfit{std::numeric_limits<float>::infinity(), 0};
     for (const auto& [i, j] : directions) {
@@ -78,8 +79,9 @@ class Picture {
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      // At a step, bend and misfit are equal; with a quarter of the bend, the ratio stays below four there. Smooth
-      // matter of wave number k has a bend of k^3 times its amplitude, so the full bend would hide larger errors.
+      // At a step, bend and misfit are equal; with a quarter of the bend, the ratio stays below four at a step. An
+      // image that varies smoothly with wave number k has a bend of k^3 times its amplitude, so the full bend would
+      // hide larger errors.
       float mean = 0, spread = bend[n] / 4;
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
@@ -88,9 +90,9 @@ class Picture {
     return misfit;
   }
 
-  /// Returns the jump across one side of a 4x4 block beyond the extrapolation of the slopes on both sides, averaged
-  /// over the side. The side begins at (x, y) and has the direction (along_x, along_y); the pixels of the block are in
-  /// the direction (in_x, in_y).
+  /// Returns the jump across one side of a 4x4 block, averaged over the side: the difference of the two pixels at the
+  /// side minus the mean of the slopes on both sides. The side begins at (x, y) and has the direction (along_x,
+  /// along_y); the pixels of the block are in the direction (in_x, in_y).
   [[nodiscard]] float jump(int x, int y, int along_x, int along_y, int in_x, int in_y) const {
     Colour sum{};
     for (int n = 0; n < 4; ++n) {
@@ -117,8 +119,8 @@ class Picture {
   const scene::Image& image_;
 };
 
-/// Returns a misfit relative to the median on a surrounding ring, which the pixel does not affect. Needed because
-/// matter is rough in one place and smooth in another.
+/// Returns the pixel's misfit relative to the median misfit on a surrounding ring, which the pixel does not affect.
+/// Needed because an image is rough in one place and smooth in another.
 float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, int y, float least) {
   constexpr int reach = 4, step = 2;
   std::array<float, 16> ring{};
@@ -133,7 +135,7 @@ float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, in
   return std::min(most, misfit[picture.index(x, y)] / (least + (count == 0 ? 0 : ring[count / 2])));
 }
 
-/// One pixel of each colour that fills at least 3x3 pixels.
+/// Marks one pixel of each colour that fills at least 3x3 pixels.
 SuspicionMap plateaus(const Picture& picture) {
   struct Plateau {
     float pixels = 0;

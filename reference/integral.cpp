@@ -116,8 +116,8 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
     sum_.optical_depth += optical_depth_at(width);
     begin = end;
   }
-  // The optical depth of the whole piece in closed form, which has no rounding errors of the steps and is correct even
-  // if the loop ended early.
+  // The optical depth of the complete piece is computed in closed form. It has no rounding errors of the steps, and is
+  // correct even if the loop ended early.
   sum_.optical_depth = optical_depth_before + total;
 }
 

@@ -35,8 +35,8 @@ struct PixelJudgement {
 };
 
 /// Compares pixels of an image with the reference, one by one. Of the pixels over the bound, at most `most_examined`
-/// are examined for an excuse, and none after a hundred were not excused; the remaining ones count as not excused.
-/// Throws like judge().
+/// are examined for an excuse. Examination also stops when a hundred pixels were not excused. The remaining pixels
+/// count as not excused. Throws like judge().
 std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayReference& reference, double bound,
                                        std::span<const PixelIndex> pixels, int threads, std::size_t most_examined);
 
@@ -47,14 +47,13 @@ std::size_t most_excused(std::size_t pixels, bool sample);
 /// Compares an image with the reference in `pixels`, or in all pixels if `pixels` is empty.
 ///
 /// Excused  The image as a function of the ray is discontinuous at faces of cell data, steps of the transfer function
-/// and
-///          boundary faces seen edge-on. A pixel over the bound is excused if its value is inside the range that the
-///          reference has for rays within 1/1024 pixel of the pixel's centre, widened by the bound. The 41 rays are on
-///          a grid over that disc and on its circumference. No other reason is an excuse.
-/// Passed   at most 1e-4 of the pixels are excused. If only some pixels of the image are checked, the sample may
-/// contain
-///          more than its share: three standard deviations are allowed, so even one excused pixel in a thousand passes.
-///          At most a hundred pixels more than the allowed number of excused pixels are examined.
+///          and boundary faces seen edge-on. A pixel over the bound is excused if its value is inside the range that
+///          the reference has for rays within 1/1024 pixel of the pixel's centre, widened by the bound. The 41 rays are
+///          on a grid over that disc and on its circumference. No other reason is an excuse.
+/// Passed   at most 1e-4 of the pixels are excused. If only some pixels of the image are checked, the random sample may
+///          contain more excused pixels than this fraction: three standard deviations are added, so a sample of a
+///          thousand pixels may have one. At most a hundred pixels more than the allowed number of excused pixels are
+///          examined.
 /// NaN      or infinity in the image counts as an infinite error and is never excused.
 /// Throws   scene::Error(bad_input) if the sizes differ, or a pixel is outside.
 Judgement judge(const scene::Image& image, const RayReference& reference, double bound,

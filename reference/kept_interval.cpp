@@ -17,8 +17,8 @@ bool is_kept(const View& view, double x, double y, const scene::HalfSpace& h, co
   const double distance = glm::dot(normal, ray.origin - h.point);
   if (std::abs(distance) > in_plane * glm::dot(glm::abs(normal), glm::abs(ray.origin) + glm::abs(h.point)))
     return distance > 0;
-  // How a shift by one pixel moves the ray, at the eye and per unit of depth. The latter does not count if the ray
-  // stays parallel to the plane.
+  // Returns how far a shift of the pixel coordinates moves the ray along the normal: at the eye, plus per unit of
+  // depth. The second term is zero if the shifted ray, too, is parallel to the plane.
   const auto moved = [&](double dx, double dy) {
     const View::Ray other = view.ray(x + dx, y + dy);
     return glm::dot(normal, other.origin - ray.origin) + glm::dot(normal, other.step - ray.step);

@@ -11,8 +11,9 @@
 #include "reference/ray_reference.hpp"
 #include "tessera/settings.hpp"
 
-/// Opacity peeling (tessera::Peel), implemented separately for the reference. The integral along a ray restarts
-/// wherever its own optical depth reaches -log(1 - threshold). The last layer has everything that remains.
+/// Opacity peeling (tessera::Peel), implemented separately for the reference. The integral along a ray restarts each
+/// time its optical depth since the last restart reaches -log(1 - threshold). The last layer contains the rest of the
+/// ray.
 namespace tessera::reference {
 
 /// The sums of an integral since the last cut between layers.

@@ -34,7 +34,7 @@ Integral::Light MatterLight::in(const scene::TetMeshView& mesh, std::size_t tet,
   if (gradient == glm::dvec3(0)) return {};
   const glm::dvec3 normal = glm::normalize(gradient), half = to_light_ - glm::normalize(ray);
   const double n_l = std::abs(glm::dot(normal, to_light_));
-  // If the light is exactly behind, there is no halfway vector.
+  // If the light is exactly opposite to the eye, there is no halfway vector.
   const double n_h = glm::length(half) > nothing ? std::abs(glm::dot(normal, glm::normalize(half))) : 0;
   return {shading_.ambient + shading_.diffuse * n_l, shading_.specular * std::pow(n_h, shading_.shininess)};
 }

@@ -38,16 +38,17 @@ struct RaySegment {
 /// invisible cells, and shares no code with the fast renderer except the plain values of scene/.
 ///
 /// Hits     are decided exactly, with the tie rule of ray_tet.hpp: along any ray, the segments tile the mesh's
-/// interval. Order    (front, back, tet index). Error    about 1e-13 in linear RGBA. Cell data is constant in a tet,
-/// point data linear between the two hits. Surfaces Iso-surfaces are crossed where the scalar changes from below a
-/// value to the value or above, or back,
-///          between the ends of a segment; several at one depth have the order along the segment. They are lit by the
-///          tet's gradient. Surfaces of triangles are met where the ray intersects a triangle; a boundary is met where
-///          a segment ends at a face that only one cell has, or where a half-space's plane cuts a cell. Segments are
-///          cut there, so that surfaces have their true depth even in cells that overlap. At one depth the order is:
-///          the surfaces at a cell's back end, the cell's boundary, triangles, cells of length zero, the next cell's
-///          boundary, and the surfaces at that cell's front end. Depths count as equal if a shift of the ray by 2^-32
-///          pixel may exchange them (shaded_ray.cpp).
+///          interval.
+/// Order    (front, back, tet index).
+/// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
+/// Surfaces Iso-surfaces are crossed where the scalar changes, between the ends of a segment, from below a value to the
+///          value or above, or back. If there are several crossings at one depth, they are in the order along the
+///          segment. They are lit by the tet's gradient. Surfaces of triangles are met where the ray intersects a
+///          triangle. A boundary is met where a segment ends at a face that only one cell has, or where a half-space's
+///          plane cuts a cell. Segments are cut at triangles and boundaries, so that these have their true depth even
+///          in cells that overlap. At one depth the order is: the surfaces at a cell's back end, the cell's boundary,
+///          triangles, cells of length zero, the next cell's boundary, and the surfaces at that cell's front end.
+///          Depths count as equal if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
 /// Shading  of point data by each tet's own gradient (scene/shading.hpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.

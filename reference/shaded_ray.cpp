@@ -79,7 +79,7 @@ class Reference::Ray {
   /// The intersection of a ray with a face of a surface.
   struct Mark {
     double depth, reach;
-    /// Values are in the order in which a ray meets faces that are in one plane.
+    /// Values are in the order in which a ray meets faces of these kinds in the same plane.
     enum class Kind : std::uint8_t { leaves, goes_through, enters } kind;
     std::size_t paint;
     glm::dvec3 normal;
@@ -93,16 +93,17 @@ class Reference::Ray {
     std::size_t first, last;  ///< range of the marks at this place
   };
 
-  /// The part of a segment between two places.
+  /// The part of a segment between two places, or a complete segment at one place.
   struct Piece {
     std::size_t before;  ///< index of the next place
-    bool at;             ///< whether the piece is at that place
+    bool at;             ///< whether the piece is a complete segment at that place
     double front, back;
     std::size_t segment, first, last;  ///< `first` and `last`: range of the segment's crossings
   };
 
-  /// Returns by how much the depth may change at which a ray shifted by `shift` meets a face. Depends on the slope of
-  /// the plane and, for rounding, on the farthest of the corners and the largest of their depths.
+  /// Returns by how much the depth at which a ray meets a face may change if the ray is shifted by `shift`. The result
+  /// depends on the slope of the plane and, for rounding, on the farthest of the corners and the largest of their
+  /// depths.
   [[nodiscard]] double reach(const glm::dvec3& normal, double depth, double far, double size) const {
     const View& view = reference_.view_;
     const View::Ray ray = view.ray(x_, y_);
@@ -134,7 +135,7 @@ class Reference::Ray {
       }
     for (const TriangleCrossing& t : reference_.triangles_on(x_, y_)) {
       const double within = reach(t.triangle->normal, t.hit.depth, t.triangle->corners);
-      // At the position of the eye itself, a face is in front of the eye only by rounding.
+      // A face through the eye must not count as in front of the eye because of rounding.
       const double nearest = reference_.view_.nearest() > 0 ? reference_.view_.nearest() : within;
       if (nearest < t.hit.depth && t.hit.depth < reference_.view_.farthest())
         marks_.push_back({t.hit.depth, within, Mark::Kind::goes_through,
@@ -142,8 +143,8 @@ class Reference::Ray {
     }
   }
 
-  /// Adds the boundary at an end of a segment, if there is one: an open face or the plane that cuts the mesh there. A
-  /// ray meets it once.
+  /// Adds the boundary at an end of a segment, if there is one: an open face, or a clipping plane that cuts the mesh. A
+  /// ray meets each clipping plane once.
   void add_boundary(const RaySegment& s, bool front) {
     const double depth = front ? s.front : s.back;
     const auto add = [&](const glm::dvec3& normal, double within) {

@@ -68,8 +68,8 @@ double hashed(std::uint64_t n, std::uint64_t salt) {
 
 std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, std::size_t most) {
   // Weighted sampling without replacement: Efraimidis, Spirakis, "Weighted random sampling with a reservoir", IPL 2006.
-  // Scores span decades, and only their order is meaningful; with their fourth roots as weights, low scores have a
-  // chance.
+  // Scores span many orders of magnitude, and only their order is meaningful. Their fourth roots are used as weights,
+  // so that pixels with low scores have a chance.
   std::vector<Ranked> by_score, by_draw;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map[i] > 0)) continue;

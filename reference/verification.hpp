@@ -27,7 +27,7 @@ struct Tally {
 struct Verification {
   Judgement judgement;                     ///< all checked pixels; rms_error: estimated from the random ones
   std::optional<double> bound;             ///< no value: errors are reported, but there is no promise to check
-  Tally random;                            ///< all checked pixels, if these are the whole image
+  Tally random;                            ///< all checked pixels, if all pixels of the image are checked
   std::array<Tally, suspicions> chosen{};  ///< indexed by Suspicion
   std::optional<Suspicion> worst;          ///< why the pixel with the largest error was chosen; no value: at random
 

@@ -8,8 +8,8 @@
 namespace tessera::reference {
 
 /// A vertex in the camera's view. The ray through pixel coordinates (x, y) (x to the right, y DOWN, pixel (i, j)
-/// centred at (i + 0.5, j + 0.5)) meets it where (x, y, 1) is parallel to `sight`. From here on these doubles are exact
-/// by definition.
+/// centred at (i + 0.5, j + 0.5)) meets the vertex where (x, y, 1) is parallel to `sight`. All later computations treat
+/// these doubles as exact.
 struct ProjectedVertex {
   glm::dvec3 homogeneous;  ///< (X, Y, w): pixel coordinates X/w and Y/w. Orthographic: w = 1. Perspective: w = depth
   /// Decides on which side a ray passes; rounded (View::project). For a vertex in front of the eye it is (x, y, 1), for
@@ -25,14 +25,14 @@ class View {
   /// The camera and size must be valid.
   View(const scene::Camera& camera, scene::ImageSize size);
 
-  /// Projects a vertex. The pixel coordinates of `sight` are rounded to the nearest multiple of 2^-32 pixel. So
-  /// vertices intended to be on pixel centres, or in the plane of the eye and a row or column of pixel centres, are
-  /// exactly there despite decimal noise in the camera. In perspective that unit is too fine far outside the image or
-  /// for very long lenses. There the unit is at least 2^(n-46) pixels, where 2^n is the power of two at or below the
-  /// largest of |x|, |y| and the pixels per unit of tangent (at most 2^22). From 2^46 pixels on, a vertex counts as in
-  /// the plane of the eye; the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger
-  /// of |X| and |Y|. Computed in long double, so that the rounded value has no noise of its own. `homogeneous` is
-  /// rounded only in orthographic projection.
+  /// Projects a vertex. The pixel coordinates of `sight` are rounded to the nearest multiple of 2^-32 pixel. So the
+  /// coordinates of vertices that should be on pixel centres, or in the plane of the eye and a row or column of pixel
+  /// centres, are exact despite decimal noise in the camera. For perspective views, this unit is too fine far outside
+  /// the image and for very long lenses. In these cases the unit is at least 2^(n-46) pixels, where 2^n is the power of
+  /// two at or below the largest of |x|, |y| and the pixels per unit of tangent (at most 2^22). From 2^46 pixels on, a
+  /// vertex counts as in the plane of the eye; the unit for X and Y is then 2^(n-40), where 2^n is the power of two at
+  /// or below the larger of |X| and |Y|. The computation uses long double, so that the rounded value has no additional
+  /// noise. `homogeneous` is rounded only in orthographic projection.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
   /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.
@@ -45,8 +45,8 @@ class View {
   /// towards the image's edges in perspective.
   [[nodiscard]] double length_per_depth(double x, double y) const;
 
-  /// Planar depths; the visible range is strictly between them. They are those of the eye and of the clipping range, if
-  /// there is one.
+  /// Planar depths; the visible range is strictly between them. nearest() is the eye's depth 0 or, if it is larger, the
+  /// near end of the clipping range; farthest() is the far end of the clipping range, or infinite.
   [[nodiscard]] double nearest() const { return nearest_; }
   [[nodiscard]] double farthest() const { return farthest_; }
 

@@ -55,24 +55,26 @@ constexpr double noted(double accuracy) { return accuracy / 2; }
 /// exceeded (bench/stability/).
 constexpr double grid_piece(double accuracy) { return accuracy / 64; }
 constexpr double grid_pieces(double accuracy) { return accuracy / 8; }
-/// The same two errors in double precision. The error of all intervals is that of a thousand intervals; no ray with
-/// more relevant intervals has been found.
+/// Error of one interval, and error of all intervals of a ray, in double precision. The error of all intervals is that
+/// of a thousand intervals; no ray with more relevant intervals has been found.
 constexpr double precise_piece(double accuracy) { return std::min(2e-9, accuracy / 2048); }
 constexpr double precise_pieces(double accuracy) { return accuracy / 2; }
 /// The accuracy with which these formulas are used for grids with the integrator `exact`. The promised error is larger,
 /// because the formulas do not include all errors.
 constexpr double casting_of_exact_grid = 2e-6;
 
-/// Layers (Peel) on the integer lattice: what the rounding of scalars may change in a pixel, if the accuracy leaves
-/// more than nothing for it. Errors of scalars and lanes change the light of a layer, and they also move its end, where
-/// the optical depth is d = -log(1 - threshold), so that light moves to another layer (compositor/deep/layer_sink.hpp).
+/// Returns the error that rounding of scalars may cause in a pixel of a layer (Peel) on the integer lattice; the result
+/// is not positive if the accuracy leaves nothing for it. Errors of scalars and lanes change the light of a layer, and
+/// they also move the end of the layer, where the optical depth is d = -log(1 - threshold), so that light moves to
+/// another layer (compositor/deep/layer_sink.hpp).
 inline double scalars_of_layers(double accuracy, double threshold, double brightest = 1, bool shaded = false) {
   const double depth = -std::log1p(-threshold);
   const double lanes = lane_integrals + (shaded ? lane_lights : 0);
   return (accuracy - brightest * (lanes * (1 + 1.5 * depth) + float_picture)) / (1 + (1 + depth) / 2);
 }
 
-// Errors of deep images that are cut anywhere, for `deep_accuracy`: pieces, merged pieces, and the rounding of alpha.
+// Errors of deep images whose segments are cut at any depth, for `deep_accuracy`: pieces, merged pieces, and the
+// rounding of alpha.
 constexpr double deep_pieces(double accuracy) { return accuracy / 2; }
 constexpr double deep_merging(double accuracy) { return accuracy / 4; }
 constexpr double deep_alpha(double accuracy) { return accuracy / 16; }

@@ -16,7 +16,7 @@ constexpr double points_in_all = 1 << 14;
 constexpr int most_points_a_tet = 4096;
 constexpr std::int64_t points_along_axis = 40;
 
-/// Returns number j of a sequence. The sequence fills [0, 1) evenly if `step` is an irrational number that fractions
+/// Returns element j of a sequence that fills [0, 1) evenly if `step` is an irrational number that fractions
 /// approximate badly.
 double uniform(std::uint64_t j, double step) {
   const double u = 0.5 + step * static_cast<double>(j & 0xffffffff);
@@ -109,7 +109,8 @@ struct AxisParts {
   }
 };
 
-/// The rows of samples around places with the same y and z, from which the field is interpolated.
+/// The rows of samples around places that have the same y and z. The field at such places is interpolated from these
+/// rows.
 class SampleRows {
  public:
   explicit SampleRows(const SampleSource& source)

@@ -34,14 +34,14 @@ struct FieldSamples {
 };
 
 /// Samples a part of a mesh. `global_tet` contains the indices of the part's tets in the whole mesh; if it is empty,
-/// the part is the whole mesh. In meshes of more than 2^16 tets, only every second, third ... tet by index is used. The
-/// number of points in a tet grows with its volume. There are about 2^14 points in all, at places of a low-discrepancy
-/// sequence in their tets.
+/// the part is the whole mesh. In meshes of more than 2^16 tets, only the tets whose index is a multiple of a stride
+/// are used. The number of points in a tet grows with its volume. There are about 2^14 points in all. Their places in
+/// the tets are those of a low-discrepancy sequence.
 FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t> global_tet, const MeshFacts& whole);
 
-/// Samples a grid: at least 40 points along each axis that has an extent, each at some place in a part of the grid of
-/// its own. The field is the one that rays see: trilinear between lattice points, or constant in the cells of cell
-/// data. Blank places are left out. Throws the errors of the source.
+/// Samples a grid: at least 40 points along each axis that has an extent. The grid is divided into equal parts, with
+/// one point at some place in each part. The field is the one that rays see: trilinear between lattice points, or
+/// constant in the cells of cell data. Blank places are left out. Throws the errors of the source.
 FieldSamples sample_grid(const SampleSource& source);
 
 }  // namespace tessera::scene

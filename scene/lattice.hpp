@@ -36,12 +36,13 @@ struct Lattice {
   [[nodiscard]] double scalar(double n) const { return scalar_origin + n * scalar_unit; }
 };
 
-/// A range of scalars that the lattice has a second time, magnified, above all scalars of the mesh. There the lattice
-/// is fine enough for a transfer function that is too steep for the usual steps. The cells that reach the range are
-/// irregular, and their segments are cut at its ends (CellsAtSteps, SplitRasterizer), so no segment is partly inside.
+/// A range of scalars that also has a magnified copy on the lattice, above all scalars of the mesh. In the copy, the
+/// lattice is fine enough for a transfer function that is too steep for the usual steps. The cells that reach the range
+/// are irregular, and their segments are cut at its ends (CellsAtSteps, SplitRasterizer), so no segment is partly
+/// inside.
 struct MagnifiedRange {
   double low, high;
-  double place, factor;  ///< the scalar to which `low` is moved; magnification
+  double place, factor;  ///< `place`: the scalar to which `low` is moved; `factor`: the magnification
 
   [[nodiscard]] bool contains(double scalar) const { return low <= scalar && scalar < high; }
   [[nodiscard]] double moved(double scalar) const { return place + (scalar - low) * factor; }

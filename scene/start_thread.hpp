@@ -12,7 +12,7 @@
 namespace tessera::scene {
 
 /// If `fault` reports that a thread could not be started, returns an Error(system_failure) for the user; otherwise
-/// none. Recognizes the exceptions of the standard library and of oneTBB.
+/// returns no value. Recognizes the exceptions of the standard library and of oneTBB.
 std::optional<Error> thread_fault(const std::exception& fault);
 
 /// Starts a std::thread. Throws Error(system_failure) if the system does not provide more threads.

@@ -14,7 +14,7 @@
 namespace tessera::scene {
 namespace {
 
-constexpr std::size_t most_surfaces = 128;  // gives 768 crossings, which fit into ten bits of a mark on the lattice
+constexpr std::size_t most_surfaces = 128;  // gives 768 numbers of crossings, which fit into ten bits on the lattice
 
 /// Computes an integer power, in a third of the time of std::pow.
 double whole_power(double base, int exponent) {

@@ -73,7 +73,8 @@ class SurfaceSet {
   /// has the number `crossing`.
   [[nodiscard]] Light light(std::uint32_t crossing, double cosine, double value = 0) const;
   /// The components of light() for vector code, indexed by the number of the crossing, with zeros after the last
-  /// crossing. `by_field` is 1 for surfaces that have the colour of the field, whose other components are 0; else 0.
+  /// crossing. For surfaces that have the colour of the field, `by_field` is 1 and red, green and blue are 0; for all
+  /// others, `by_field` is 0.
   struct PaintColumns {
     std::vector<double> red, green, blue, opacity, by_field;
   };

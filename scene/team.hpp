@@ -25,8 +25,9 @@ class Team {
   /// Returns, on every member, the numbers of all members in the order of members. Also a barrier.
   virtual std::vector<std::uint64_t> gather(std::uint64_t word) = 0;
 
-  /// Returns the next of the numbers 0 to `count` - 1 that the members share in this epoch, or `count` if none remains.
-  /// A later call with a larger `count` may return more numbers. May be called from any thread.
+  /// Returns the next of the numbers 0 to `count` - 1, or `count` if none remains. All members draw from the same
+  /// numbers during an epoch (exchange/host_team.hpp). A later call with a larger `count` may return more numbers. May
+  /// be called from any thread.
   virtual std::uint32_t draw(std::uint32_t count) = 0;
 
   /// The purposes of shared memory. There is one block for each purpose.

@@ -14,9 +14,9 @@ using tessera::TraceRole;
 using tessera::TraceScope;
 using tessera::TraceSpan;
 
-/// Measures the times of stages that alternate too quickly to use a scope for each (every sixteen cells or pixels). The
-/// timer reads the processor's own counter, which takes some ten nanoseconds. At the end, one span is recorded for each
-/// stage, with its share of the time; these spans follow one another. Does nothing if `trace` is null.
+/// Measures the times of stages that alternate every sixteen cells or pixels, too quickly to use a scope for each. The
+/// timer reads the processor's own counter, which takes about ten nanoseconds. At the end, one span is recorded for
+/// each stage, with its share of the time; these spans follow one another. Does nothing if `trace` is null.
 class StageTimer {
  public:
   explicit StageTimer(Trace* trace) : trace_(trace) {

@@ -62,7 +62,7 @@ std::string random_hex(std::size_t count);
 
 /// The decoded value of `name` in a query; none if it is missing or its escapes are invalid.
 std::optional<std::string> query_value(std::string_view query, std::string_view name);
-/// Decodes the escapes of an address. Returns none if they are invalid. If `plus`, a plus sign stands for a blank.
+/// Decodes the escapes of an address. Returns none if they are invalid. If `plus`, a plus sign is decoded as a blank.
 std::optional<std::string> decoded(std::string_view text, bool plus);
 
 }  // namespace tessera::server

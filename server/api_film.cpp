@@ -82,7 +82,7 @@ class FilmWork final : public ApiWork {
 
  private:
   ApiResult make_frame() {
-    // The file is never given its name, so nothing remains of it, however this process ends.
+    // The film's file has no name in the directory, so nothing remains of the file, however this process ends.
     if (!film_) film_.emplace(name_, first_.size, FilmFileOptions{scene_->image_options(), plan_.rate});
     const View view{plan_.camera(made_, first_.camera), first_.size};
     YieldingSink sink(context_.precedence, stop_, [](const Tile& /*tile*/) {});
@@ -139,7 +139,8 @@ FilmPlan::FilmPlan(const Json& body) {
                                   least_film_rate, most_film_rate));
   }
   if (body.contains("views") == body.contains("orbit"))
-    throw bad_input("film: it needs either an orbit or views; send orbit, a number of frames, or views");
+    throw bad_input(
+        "film: it needs either an orbit or views; send either orbit (a number of frames) or views (a list of cameras)");
   if (body.contains("views")) {
     views = views_of(body);
     frames = whole_number(body, "frames", static_cast<std::int64_t>(views.size()), 1, most_frames);

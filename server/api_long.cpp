@@ -18,7 +18,7 @@ PictureFormat picture_format(const Json& body) {
   if (word == "png") return PictureFormat::png;
   if (word == "exr") return PictureFormat::exr;
   if (word == "jpg") return PictureFormat::jpeg;
-  throw bad_input("format: is not an image format; use png, exr or jpg");
+  throw bad_input("format: its value is not an image format; use png, exr or jpg");
 }
 
 /// Renders an image as `tessera render` writes it.

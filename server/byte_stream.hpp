@@ -21,7 +21,8 @@ class context;
 namespace tessera::server {
 
 /// The stream of bytes of a connection, plain or encrypted by TLS. All operations take handlers of one type, so that
-/// ByteStream instantiates the large templates of Boost.Beast (HTTP, WebSocket) only once for both.
+/// ByteStream instantiates the large templates of Boost.Beast (HTTP, WebSocket) only once for plain and encrypted
+/// streams.
 ///
 /// Threads  The stream is only used on the network's thread. `done` is called on that thread, after the function has
 ///          returned.
@@ -29,7 +30,7 @@ namespace tessera::server {
 class Bytes {
  public:
   using Done = std::function<void(boost::system::error_code, std::size_t)>;
-  /// Largest number of pieces of memory in one operation; unused pieces are empty.
+  /// Largest number of memory ranges in one operation; unused ranges are empty.
   static constexpr std::size_t most_pieces = 8;
   using ReadPieces = std::array<boost::asio::mutable_buffer, most_pieces>;
   using WritePieces = std::array<boost::asio::const_buffer, most_pieces>;

@@ -54,7 +54,8 @@ struct Listener::State {
     if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (!error) return;
     if (error == asio::error::address_in_use)
-      throw bad_input(fmt::format("--port: {} is in use; name another, or none for a free one", port));
+      throw bad_input(
+          fmt::format("--port: {} is in use; choose another port, or leave --port out to get a free one", port));
     if (error == asio::error::access_denied)
       throw bad_input(
           fmt::format("--port: {} needs privileges that this process does not have; name one above 1023", port));

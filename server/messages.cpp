@@ -11,8 +11,8 @@
 namespace tessera::server {
 namespace {
 
-/// Largest number of values in a message. A page's state has a few hundred values; with a dense transfer function it
-/// has some ten thousand.
+/// Largest number of values in a message. A page's state has a few hundred values, or about ten thousand with a dense
+/// transfer function.
 constexpr std::size_t most_values = 100'000;
 
 Json parse_object(std::string_view text, const char* what) {

@@ -18,16 +18,16 @@ namespace {
 /// A launcher kills ranks a second after SIGTERM. A rank that is still working must report within half of this time.
 constexpr std::chrono::milliseconds patience(500);
 
-/// Returns an address as part of a URL: IPv6 in brackets, and the loopback address instead of the address that stands
-/// for all addresses of a machine.
+/// Returns an address as part of a URL: IPv6 in brackets, and the loopback address instead of the address that means
+/// all addresses of a machine.
 std::string web_host(const std::string& address) {
   if (address == "0.0.0.0" || address == "::") return "127.0.0.1";
   return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
-/// Calls `late` unless the run ends within `patience` after hurry(), since some work cannot be stopped. A launcher
-/// sends the same signal to all ranks when the user ends the job and when a rank has died. A dead rank does not
-/// respond.
+/// Calls `late` unless the run ends within `patience` after hurry(). A run may not end because some work cannot be
+/// stopped, or because a rank has died and does not respond. A launcher sends the same signal to all ranks when the
+/// user ends the job and when a rank has died.
 class EndWatch {
  public:
   explicit EndWatch(std::function<void()> late) : late_(std::move(late)) {}

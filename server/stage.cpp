@@ -259,7 +259,7 @@ void Stage::make_preview_together(const Json& state, HeldData& held) {
     std::optional<Dataset> made = coarse_preview(held.data, {}, {}, job_.communicator());
     if (is_first) held.preview = std::move(made);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;  // for other errors there is no preview
+    if (error.code() != ErrorCode::bad_input) throw;  // bad_input only means that there is no preview
   }
 }
 

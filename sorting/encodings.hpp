@@ -18,7 +18,8 @@ namespace tessera::sorting {
 ///   Depth  the type of a depth along the view direction; `end` is greater than all depths
 ///   Open   the type that marks the pixels of a rectangle which still accept segments
 ///
-/// Double precision, for any frame. Depths are in world units, scalars in the field's own unit.
+/// DoubleEncodingOf is the encoding in double precision, for any frame. Depths are in world units, scalars in the
+/// field's own unit.
 template <class Segments>
 struct DoubleEncodingOf {
   using Store = SegmentListsOf<Segments>;
@@ -29,8 +30,8 @@ struct DoubleEncodingOf {
 };
 using DoubleEncoding = DoubleEncodingOf<projection::RaySegments>;
 
-/// The same encoding with an attribute in addition to the scalar (projection::ProjectedMesh::attribute). It is a type
-/// of its own so that the code compiled for DoubleEncoding does not change.
+/// The same encoding with an attribute in addition to the scalar (projection::ProjectedMesh::attribute). It is a
+/// separate type, so that the code compiled for DoubleEncoding does not change.
 using AttributeEncoding = DoubleEncodingOf<projection::AttributeSegments>;
 
 /// The integer lattice (scene/lattice.hpp), for frames that have a lattice. It processes 16 pixels or cells at a time.

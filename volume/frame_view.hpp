@@ -47,10 +47,10 @@ struct PixelRays {
 /// from world to index space times `unit`, the world gradient of a gradient g is W^T g.
 struct ShadingView {
   float ambient, diffuse, specular, shininess;
-  float metric[3][3];     ///< W W^T, for squared lengths of world gradients
-  float light[3];         ///< W l, where l is the unit vector towards the light, for dot products with it
-  float light_per_noise;  ///< upper bound of the change of light with a gradient's components, times the gradient's
-                          ///< length
+  float metric[3][3];  ///< W W^T, for squared lengths of world gradients
+  float light[3];      ///< W l, where l is the unit vector towards the light, for dot products with it
+  /// Upper bound of the derivative of light by a gradient's components, times the gradient's length.
+  float light_per_noise;
   double unit;  ///< length unit of world gradients, in world units: the side of a voxel, so that squares are in the
                 ///< range of a float
   double light_eye[3];  ///< l along the camera's right and up axes and towards the eye

@@ -23,14 +23,15 @@ struct ErrorBoundSettings {
 /// (ray_piece-inl.h). Rays whose sum of errors exceeds the tolerance are cast again in double precision
 /// (voxel_cast.hpp).
 ///
-/// Excess    If a medium of colour c has an excess e of optical depth, at a position with transmittance T in front of
-///           it and light I from behind, the light changes by T e (c - I), and the opacity by e times the transmittance
-///           of the whole ray. This is little in front of or inside dense matter of the same colour.
+/// Excess    Suppose that the optical depth of a medium of colour c is too large by e, at a position with transmittance
+///           T in front of it and light I from behind. The light then changes by T e (c - I), and the opacity by e
+///           times the transmittance of the whole ray. This is little in front of or inside dense matter of the same
+///           colour.
 /// Steps     A ray that almost touches the isosurface of a step of the transfer function is inside for a length whose
-///           error is the square root of the field's error: where the field is level + a (u - u0)^2, a rounding error
-///           of 1e-7 creates or moves crossings by 3e-4. Knots that lanes cannot distinguish are also a step, whose
+///           error is the square root of the field's error. If the field is level + a (u - u0)^2, a rounding error of
+///           1e-7 creates or moves crossings by 3e-4. Knots that lanes cannot distinguish are also a step; the step's
 ///           height is the variation of the function between them.
-/// Ramps     Where the function is steep, the error of the field counts for as long as a ray stays there. Rounding
+/// Ramps     Where the function is steep, the error of the field has an effect along a ray's whole path there. Rounding
 ///           errors of positions and field differ from voxel to voxel: an eighth of their bound adds up as a sum of
 ///           squares, and a sixteenth linearly (measured on random grids and narrow peaks, docs/ACCURACY.md). Rounding
 ///           errors of knots are the same at each crossing.

@@ -10,7 +10,7 @@
 #include "tessera/mechanisms.hpp"
 #include "tessera/settings.hpp"
 
-/// The values that the words of an option with several choices stand for, in the order of the words in the option
+/// For each option with several choices: the values that its words denote, in the order of the words in the option
 /// table. OptionWords::choice() converts words to values, State::set() converts values to words.
 namespace tessera::api {
 

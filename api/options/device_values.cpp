@@ -28,7 +28,8 @@ DeviceSettings device_settings(const OptionWords& words, bool for_volume) {
   const std::string& compositor = words.word("compositor");
   assign(settings.half, words.choice("framebuffer", on_off));
   if (words.given("framebuffer") && compositor != "gl-fragment")
-    throw bad_input("`framebuffer`: it is for `compositor` gl-fragment; leave one of the two out");
+    throw bad_input(
+        "`framebuffer`: it is for `compositor` gl-fragment; leave `framebuffer` out, or use `compositor` gl-fragment");
   const bool asks_for_gl = compositor.starts_with("gl-");
   const std::vector<Backend> backends = backends_of(words.word("backend"));
   const auto is = [](Backend wanted) { return [wanted](Backend b) { return b == wanted; }; };
@@ -47,7 +48,7 @@ DeviceSettings device_settings(const OptionWords& words, bool for_volume) {
     if (!settings.by_local_rank) settings.egl_device = words.count("egl-device", 0);
     if (std::ranges::none_of(backends, is(Backend::egl)) && std::ranges::none_of(backends, is(Backend::automatic)) &&
         !(asks_for_gl && backends.empty()))
-      throw bad_input("`egl_device`: it is for `backend` egl; leave one of the two out");
+      throw bad_input("`egl_device`: it is for `backend` egl; leave `egl_device` out, or use `backend` egl");
   }
   if (for_volume || compositor == "cpu" || (all_cpu && !asks_for_gl)) return settings;
   settings.backends = backends.empty() ? std::vector{Backend::automatic} : backends;

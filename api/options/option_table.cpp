@@ -18,11 +18,11 @@ constexpr OptionRow input_rows[] = {
      "mesh: .vtu .pvtu .vtk .vtm .foam .case .cgns .ex2 .ele .tets .stl ...; volume: .vti .pvti .vtr .pvtr .vtk .mhd "
      ".nrrd .nii .nii.gz .raw"},
     {"more", "", render | positional | list,
-     "more meshes: a time series, as is INPUT alone if it is a .pvd, a .series or mesh_%04d.vtu"},
+     "more meshes, which form a time series with INPUT; a .pvd, a .series or mesh_%04d.vtu is a time series by itself"},
     {"kind", "", generate | positional | required, "what to make, see below"},
     {"out", "", convert | positional | required,
-     "of a mesh .vtu, .tets, or .pvtu with --pieces; of a volume .vti .vtr .nrrd .raw .bricks"},
-    {"out", "", generate | positional | required, "of a mesh .vtu or .tets; of a volume .vti .nrrd .raw .bricks"},
+     "mesh: .vtu, .tets, or .pvtu with --pieces; volume: .vti .vtr .nrrd .raw .bricks"},
+    {"out", "", generate | positional | required, "mesh: .vtu or .tets; volume: .vti .nrrd .raw .bricks"},
     {"parameters", "", generate | positional | list, "NAME=VALUE ..."},
     {"trace", "", timing | positional | list | required, "files that render --timing wrote; several are compared"},
     {"command", "", help | positional, "one of the commands; without it, the list of commands"},
@@ -37,7 +37,7 @@ constexpr OptionRow server_rows[] = {
     {"tls-certificate", "FILE", serve, "PEM file of the certificate: serve over https"},
     {"tls-key", "FILE", serve, "PEM file of the certificate's key"},
     {"allow-host", "NAME", serve | list,
-     "a name in the browser's address, in addition to loopback and --bind; may be repeated"},
+     "a host name that the browser's address may have, in addition to loopback and --bind; may be repeated"},
 };
 
 constexpr OptionRow data_rows[] = {
@@ -51,11 +51,11 @@ constexpr OptionRow data_rows[] = {
     {"max-volume", "VOLUME", reading | meshes | data, "surfaces: largest volume of the tetrahedra that fill them"},
     {"time-step", "STEP|all|FIRST:LAST[:STRIDE]", reading | basic | state | data,
      "Exodus, OpenFOAM, 4-D NIfTI, NRRD, .pvd ...: time step, counted from 0 (default: the last of the file); render "
-     "also makes a film of several"},
+     "also makes a film of several steps"},
     {"block", "NAME", pictures | info | chart | basic | list | meshes | state | data,
      "files in blocks: draw only this block, one of those that info lists; may be repeated"},
     {"block", "NAME", convert | list,
-     "mesh in blocks: write only this block; may be repeated; to .bricks: samples per side of a brick (default "
+     "mesh in blocks: write only this block; may be repeated; output to .bricks: samples per side of a brick (default "
      "64)"},
     {"drop-duplicates", "", reading | flag | meshes | state | data,
      "draw cells with the same corners only once, where parts of the mesh are given twice"},
@@ -95,8 +95,8 @@ constexpr OptionRow color_rows[] = {
      "world length to which a file's opacity applies (default: the file's, else mean thickness / 10)"},
     {"opacity,opacity-scale", "FACTOR", pictures | chart | basic | state | look | knots, "multiplies the extinction"},
     {"range", "MIN,MAX", pictures | basic | state | look | knots | range,
-     "values that colours and opacities span (default: the field's for a preset, 0.5 to 99.5 % of the volume without "
-     "one; a file is stretched)"},
+     "range of values that colours and opacities span; a file is stretched over it (default: the field's range for a "
+     "preset, 0.5 to 99.5 % of the volume without one)"},
     {"log", "", pictures | basic | flag | state | look | knots | range,
      "colours and opacities by the logarithm of the value"},
     {"opacity-points", "T:A,...", pictures | basic | state | look | knots,
@@ -105,7 +105,7 @@ constexpr OptionRow color_rows[] = {
     {"emission", "absorption|independent", pictures | chart | state | look | settings,
      "source term (default: absorption)"},
     {"background", "R,G,B|#RRGGBB|NAME", pictures | basic | state,
-     "linear R,G,B, sRGB #rrggbb or CSS's name; without it, the image has an alpha channel"},
+     "linear R,G,B, sRGB #rrggbb or a CSS colour name; without it, the image has an alpha channel"},
 };
 
 constexpr OptionRow view_rows[] = {
@@ -127,8 +127,8 @@ constexpr OptionRow view_rows[] = {
 
 constexpr OptionRow surface_rows[] = {
     {"iso", "VALUE[:COLOUR[:OPACITY]]", pictures | basic | list | state | look | settings,
-     "the surface where the field has this value, lit, within the volume (colour: the transfer function's there; "
-     "opacity 1); may be repeated"},
+     "the surface where the field has this value, lit, within the volume (default: the transfer function's colour at "
+     "this value, opacity 1); may be repeated"},
     {"surface", "boundary|BLOCK|FILE[:COLOUR[:OPACITY]]", pictures | basic | list | state | surfaces | look | settings,
      "meshes: the boundary, or a block, patch or side set of the mesh (colour: the field's; opacity 1), or the "
      "triangles of a file (light grey), lit, within the volume; may be repeated"},
@@ -146,9 +146,9 @@ constexpr OptionRow annotation_rows[] = {
      "draw the transfer function's colours and opacity; =left, =top or =bottom sets the place"},
     {"color-bar-title", "TEXT", pictures | state | annotation, "title above the colour bar (default: {field})"},
     {"color-bar-range", "LOW,HIGH", pictures | state | annotation,
-     "values at its ends (default: the transfer function's)"},
+     "values at the ends of the colour bar (default: the transfer function's)"},
     {"color-bar-scale", "linear|log", pictures | state | annotation,
-     "scale of the values along it (default: log with --log)"},
+     "scale of the values along the colour bar (default: log with --log)"},
     {"field-unit", "TEXT", pictures | state | annotation, "unit of the field's values, for the colour bar's title"},
     {"axes", "triad|box|both", pictures | basic | place | state | annotation,
      "draw the directions of the axes; =box: a box around the data with round values along it; =both"},
@@ -165,7 +165,7 @@ constexpr OptionRow annotation_rows[] = {
     {"annotation-size", "PIXELS", pictures | state | annotation,
      "height of the text (default: 2 % of the image's height)"},
     {"annotation-layer", "FILE", render | annotation,
-     ".png or .exr: the annotation alone, with alpha; images stay bare"},
+     ".png or .exr: the annotation alone, with alpha; the images have no annotation"},
 };
 
 constexpr OptionRow output_rows[] = {
@@ -173,7 +173,7 @@ constexpr OptionRow output_rows[] = {
      "image: .exr .png .jpg .tif .pfm .deep.exr, frame_%04d.png for several; film: .mp4 .mov .mkv .webm .gif; - for "
      "a "
      "PNG on standard output; may be repeated"},
-    {"o,output", "FILE", presets, "draw them into this image: .png .exr .jpg .tif"},
+    {"o,output", "FILE", presets, "draw the presets into this image: .png .exr .jpg .tif"},
     {"frame-rate", "FPS", render | basic, "films: frames per second (default 25)"},
     {"peel", "THRESHOLD[:LAYERS]", render,
      "also write the image in layers, cut wherever a ray's opacity since the last cut reaches THRESHOLD: a.exr has "
@@ -190,8 +190,8 @@ constexpr OptionRow output_rows[] = {
     {"pieces", "N", convert, "write OUT.pvtu and N pieces, for mpirun"},
     {"partition", "curve|file|random", convert,
      "how cells are divided into pieces: curve (compact, the default), file (order kept), random"},
-    {"subdivide", "TIMES", convert, "of a mesh: number of times that every tetrahedron is cut into eight"},
-    {"csv", "FILE", timing, "the same figures as a table"},
+    {"subdivide", "TIMES", convert, "meshes: number of times that every tetrahedron is cut into eight"},
+    {"csv", "FILE", timing, "the printed numbers as a table"},
     {"figure", "FILE", timing, "stacked bars, .svg or .png"},
     {"all", "", help | flag, "every option"},
     {"man", "", help | flag, "as a manual page (roff)"},
@@ -201,7 +201,8 @@ constexpr OptionRow accuracy_rows[] = {
     {"integrator", "auto|exact|sampled:N|preintegrated[:N]|partial", pictures | state | settings,
      "how the colour of a ray segment is computed (default: auto); volumes: auto, exact, sampled or preintegrated"},
     {"accuracy", "EPS", pictures | basic | state | settings, "auto: largest error in linear RGBA (default 1e-4)"},
-    {"deep-accuracy", "EPS", render, ".deep.exr: largest error in linear RGBA of a sample cut anywhere (default 1e-3)"},
+    {"deep-accuracy", "EPS", render,
+     ".deep.exr: largest error in linear RGBA when a sample is cut at any depth (default 1e-3)"},
     {"rasterizer", "planes|scanline|device", render | meshes,
      "how cells become ray segments (default: planes; the paper's: scanline; device: as planes, by gl-compute)"},
     {"step", "VOXELS", pictures | volumes | state | settings,
@@ -226,7 +227,8 @@ constexpr OptionRow accuracy_rows[] = {
      "roles; other options override it"},
     {"budget-seconds", "S", chart, "time for all measurements, without reading (default 60)"},
     {"repeat", "K", chart, "frames per method, if the budget allows (default 5)"},
-    {"pixels", "N", chart, "number of random pixels from which errors are computed (default: as many as fit)"},
+    {"pixels", "N", chart,
+     "number of random pixels from which errors are computed (default: as many as the time allows)"},
     {"peer", "FILE", chart | list, "measured images of other programs (JSON)"},
     {"json", "FILE", chart, "JSON file with all measurements"},
     {"csv", "FILE", chart, "the same as a table"},
@@ -269,7 +271,8 @@ constexpr OptionRow rank_rows[] = {
      "under mpirun: random seed of the tile map and of --partition random (default: 1)"},
     {"stall-timeout", "SECONDS", pictures | machine,
      "under mpirun: a rank that has been silent for this long is reported as stopped; 0: never (default: 120)"},
-    {"on-stall", "wait|abort", pictures | machine, "under mpirun: wait for such a rank (default), or end the run"},
+    {"on-stall", "wait|abort", pictures | machine,
+     "under mpirun, if a rank is reported as stopped: wait for it (default), or end the run"},
 };
 
 constexpr OptionRow file_rows[] = {

@@ -28,7 +28,7 @@ bool is_setting(std::string_view name) {
   return row != nullptr && !row->is(Trait::positional);
 }
 
-/// Whether a setting's name may follow the text `before`: the name must be a word of its own, neither part of a file's
+/// Whether a setting's name may follow the text `before`: the name must be a separate word, neither part of a file's
 /// name nor quoted.
 bool may_precede(std::string_view before) { return before.empty() || before.back() == ' ' || before.back() == '('; }
 bool may_follow(std::string_view after) {
@@ -84,7 +84,7 @@ std::string with_options(std::string_view text) {
     if (close == std::string_view::npos) break;
     const std::string_view name = text.substr(open + 1, close - open - 1);
     if (!may_precede(text.substr(0, open)) || !may_follow(text.substr(close + 1)) || !is_setting(name)) {
-      // The second backquote may be the first one of a name.
+      // The second backquote may be the opening backquote of the next name.
       result += text.substr(done, close - done);
       done = close;
       continue;

@@ -49,24 +49,24 @@ void set_peel(const OptionWords& words, RenderOptions& options) {
     throw bad_input("`deep_accuracy`: has no effect on the layers of `peel`; leave one of the two out");
   const IntegratorKind kind = options.settings.integrator.kind;
   if (kind != IntegratorKind::automatic && kind != IntegratorKind::exact)
-    throw bad_input(fmt::format(
-        "`peel`: with `integrator` {}, the light of a segment differs from that of its parts; use auto or exact",
-        method_word(kind)));
+    throw bad_input(
+        fmt::format("`peel`: with `integrator` {}, cutting a ray segment changes its colour; use auto or exact",
+                    method_word(kind)));
 }
 
-/// Throws for deep images of volumes that cannot be rendered.
+/// Throws if the options do not allow deep images of volumes.
 void refuse_deep_volumes(const RenderOptions& options) {
   if (options.show_balance)
     throw bad_input("deep image: `show` balance does not draw deep images; give an .exr, .png or .pfm");
   if (options.frame.peel) return;
   if (takes_steps(options.settings.integrator))
-    throw bad_input(fmt::format(
-        "deep image: with `integrator` {}, the light of a step differs from that of its parts; use auto or exact",
-        method_word(options.settings.integrator.kind)));
+    throw bad_input(
+        fmt::format("deep image: with `integrator` {}, cutting a step changes its colour; use auto or exact",
+                    method_word(options.settings.integrator.kind)));
   if (options.settings.grid.shading) throw bad_input("deep image: shading is not supported; leave `shade` out");
 }
 
-/// Throws for images that cannot be annotated.
+/// Throws if none of the images can be annotated.
 void refuse_unannotated(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("`show` balance: annotation is not supported; leave one of the two out");
   if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
@@ -90,7 +90,7 @@ ImageFileOptions image_options(const OptionWords& words) {
 void set_outputs(const OptionWords& words, RenderOptions& options) {
   for (const std::string& output : words.words("output")) {
     if (output == standard_stream) {
-      if (options.to_standard_output) throw bad_input("-o -: is given twice; give it once");
+      if (options.to_standard_output) throw bad_input("-o: '-' is given twice; give it once");
       options.to_standard_output = true;
     } else if (is_film_name(output)) {
       options.films.emplace_back(output);

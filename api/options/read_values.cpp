@@ -33,7 +33,8 @@ Selection selection_of(const OptionWords& words) {
       const auto n = parse_numbers("`clip`", text, 6, "PX,PY,PZ,NX,NY,NZ, a point and a normal");
       selection.clip.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
       if (selection.clip.back().normal == glm::dvec3(0))
-        throw bad_input(fmt::format("`clip`: '{}' has the normal 0,0,0; give the side to keep", text));
+        throw bad_input(
+            fmt::format("`clip`: '{}' has the normal 0,0,0; give a normal that points to the side to keep", text));
     }
   }
   selection.threshold = words.interval("threshold", true);

@@ -14,8 +14,8 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// Throws for options of the other kind of data, except for options of meshes with their default value, which is the
-/// first choice.
+/// Throws for options that apply only to the other kind of data. For grids, an option of meshes is allowed if it has
+/// its default value, which is its first choice.
 void refuse_others(const OptionWords& words, bool is_grid) {
   for (const OptionRow* row : option_rows(is_grid ? Trait::meshes : Trait::volumes)) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;

@@ -148,7 +148,7 @@ void set_mesh_ranks(State& state, const RankSettings& ranks) {
   state.set("exchange", ranks.exchange ? word_of("exchange", *ranks.exchange, exchanges) : "");
   state.set("partition", word_unless("partition", ranks.partition.kind, by_default.partition.kind, partition_kinds));
   if (ranks.tile_seed != ranks.partition.seed)
-    throw unstated("seed", "one of the map of tiles and another of the partition");
+    throw unstated("seed", "the tile map and the partition have different seeds");
   state.set("seed", unless_default(ranks.tile_seed, by_default.tile_seed));
 }
 

@@ -54,7 +54,8 @@ bool is_preset(const std::string& text) {
 /// Throws for the name of a file: from the network, only JSON text and presets are accepted.
 void check_no_file(const OptionRow& row, const std::string& text) {
   if (is_json_text(text)) return;
-  if (row.is(Trait::camera)) throw bad_input("state: 'camera' is not a camera (a JSON object); send one");
+  if (row.is(Trait::camera))
+    throw bad_input("state: 'camera' must be a JSON object; send a camera as in a camera file");
   if (!is_preset(text))
     throw bad_input(fmt::format("state: '{}' is neither a preset nor a JSON object; send one of them", row.key()));
 }

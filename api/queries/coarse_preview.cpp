@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::uint64_t least_samples = 8, most_samples = std::uint64_t{1} << 26;
 
-/// Makes a data set of samples that has the names of the data that it represents.
+/// Makes a data set of the samples of a preview. It has the source and field name of `whole`, the data that it
+/// represents.
 Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dataset::State& whole, int threads) {
   auto state = std::make_shared<Dataset::State>();
   state->samples = std::move(samples);

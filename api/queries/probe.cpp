@@ -53,8 +53,8 @@ class ProbedRay {
     camera.clipping_range = {near, far};
     return pixel_with(camera).a;
   }
-  /// Returns the point at `depth`. If this place is outside the cells because of rounding, the value is that just in
-  /// front of it or behind it.
+  /// Returns the point at `depth`. If the point is outside the cells because of rounding, its value is that of a point
+  /// just in front of it or just behind it.
   [[nodiscard]] RayPoint point(double depth) const {
     const reference::View::Ray ray = eye_.ray(x(), y());
     const double nudge = 1e-7 * (1 + std::abs(depths().end - depths().begin));

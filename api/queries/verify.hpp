@@ -22,7 +22,7 @@ namespace tessera::api {
 /// published (gl-fragment): their errors are only reported.
 std::optional<double> promised_error(const Settings& settings, DataKind data);
 
-/// Chooses the pixels of a finished image to check, if `count` pixels are checked: those that are least certain
+/// Chooses the suspicious pixels of a finished image for a check of `count` pixels: those that are least certain
 /// according to the image, the scene and the frame's own estimates (reference/suspicion.hpp). The result depends only
 /// on the arguments and not on the number of threads, so that a second run, on any number of ranks, checks the same
 /// pixels.
@@ -41,7 +41,7 @@ struct Verified {
   reference::LayerVerification layers;
 };
 
-/// The layers of an image and how they were cut; empty if there are no layers.
+/// The layers of an image, and the settings with which they were separated; empty if there are no layers.
 struct Layers {
   std::span<const scene::Image> images{};
   std::optional<Peel> peel{};

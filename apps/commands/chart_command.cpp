@@ -191,11 +191,12 @@ void chart(const OptionWords& words) {
   fmt::print("{}; {}\n", printable(what), printable(where));
   print_table(points);
   fmt::print(
-      "errors: largest, RMS and 99.9 % of differences in linear RGBA to the double-precision reference, over "
-      "{};\nvisible: share of these pixels above Delta E 2000 of 1, over black; * no other method is both faster and "
-      "more accurate; tables of the\ntransfer function are made before a method's first frame, in prepare_ms of the "
-      "JSON\n",
-      truth.whole_image ? "every pixel" : "a random sample of the pixels: the image's largest may be larger");
+      "errors: largest, RMS and 99.9 % quantile of the differences in linear RGBA from the double-precision reference, "
+      "over {};\nvisible: percentage of these pixels with a Delta E 2000 above 1, composited over black; * no other "
+      "method is both faster and more accurate; tables of the\ntransfer function are made before a method's first "
+      "frame, in prepare_ms of the JSON\n",
+      truth.whole_image ? "every pixel"
+                        : "a random sample of the pixels: the largest error of the image may be larger");
   if (measured.missing_seconds > 0)
     fmt::print("--budget-seconds {:.0f} would, as a rough estimate, suffice for all\n",
                std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));

@@ -42,8 +42,8 @@ void print_text(const std::vector<FileFormat>& all) {
                format.left_out.empty() ? "" : fmt::format("needs {}, which is not installed", format.left_out),
                format.left_out.empty() || format.remark.empty() ? "" : "; ", with_options(format.remark));
   fmt::print(
-      "\nThe beginning of a file decides its format, then its name (of PLOT3D, TetGen's files, .tets, .raw the name "
-      "alone).\nFormats of one file are also read from .gz.\n");
+      "\nThe first bytes of a file decide its format, then its name (PLOT3D, TetGen's files, .tets and .raw: only the "
+      "name).\nFormats that consist of one file are also read from .gz.\n");
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ std::string steps_line(const Steps& steps) {
       line += fmt::format("{}{:.6g}", k == 0 ? "" : ", ", steps.times[k]);
     }
   }
-  return line + fmt::format("; below step {} of 0 to {}", steps.at, steps.count - 1);
+  return line + fmt::format("; the lines below are for step {} of 0 to {}", steps.at, steps.count - 1);
 }
 
 void print_text(const std::filesystem::path& input, const analysis::Description& data,
@@ -69,7 +69,7 @@ void print_text(const std::filesystem::path& input, const analysis::Description&
   if (steps.count > 1) fmt::print("steps     {}\n", steps_line(steps));
   if (data.is_mesh) {
     fmt::print("cells     {}\n", cells_line(data.counts));
-    fmt::print("points    {}, {} of them in no cell kept\n", data.counts.points_read, data.counts.points_unused);
+    fmt::print("points    {}, {} of them not in any kept cell\n", data.counts.points_read, data.counts.points_unused);
   } else {
     fmt::print("lattice   {}\n", lattice_line(data.geometry));
     fmt::print("samples   {}\n", printable(samples_line(data)));
@@ -115,7 +115,7 @@ void print_finding(const char* name, const MeshCheck::Finding& finding, const st
 
 void print_check(const MeshCheck& check) {
   fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
-             check.clean() ? "every ray passes each point only once"
+             check.clean() ? "no cells overlap or fold, and all faces match"
                            : "cells overlap, fold or do not match; images are wrong where cells overlap");
   print_finding("overlapping pairs", check.overlaps,
                 fmt::format("{}, {} cells", check.more_overlaps ? " or more" : "", check.overlapping_cells), true);

@@ -97,8 +97,8 @@ class RenderScene final : public server::Scene {
     const char* const side = data.association() == Association::cell ? "cell:" : "point:";
     add(name, false);
     if (!name.starts_with(side)) add(side + name, false);
-    // If no field is named, the chosen field is the same with and without a given function, except for labels and
-    // constants, for which the shape is shown.
+    // If no field is named, the same field is chosen with and without a transfer function. Exceptions are labels and
+    // constants: without a function, the shape is shown instead.
     if (parsed_->field.empty() && parsed_->shape) add("", false);
     return keys;
   }

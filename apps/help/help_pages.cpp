@@ -17,7 +17,7 @@ constexpr std::string_view program_description =
     "Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.";
 constexpr std::size_t page_columns = 100, left_column = 30;
 
-/// Breaks text into lines. A word that is longer than a line has a line of its own.
+/// Breaks text into lines. A word that is longer than a line gets a separate line.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   std::vector<std::string> lines(1);
   for (std::size_t at = 0; at < text.size();) {
@@ -30,7 +30,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   return lines;
 }
 
-/// Returns the first part of a description that is too long, up to a semicolon or bracket.
+/// Returns the description or, if it is longer than `width`, its part before the first semicolon or bracket.
 std::string_view first_words(std::string_view description, std::size_t width) {
   if (description.size() <= width) return description;
   const std::size_t cut = std::min(description.find("; "), description.find(" ("));
@@ -49,7 +49,8 @@ void add_entry(std::string& page, const std::string& form, std::string_view desc
   page += '\n';
 }
 
-/// A command's options under one title, without positional words. For `render` only the basic options, unless `all`.
+/// A command's options under one title, without positional words. For `render`, contains only the basic options unless
+/// `all`.
 struct HelpTopic {
   std::string_view title;
   std::vector<const OptionRow*> rows;

@@ -146,7 +146,7 @@ class SeriesExamination {
   const ReadOptions& read_;
   const OpenStep& open_;
   const bool keeps_values_;
-  std::vector<ExaminedStep> examined_;  ///< in the order of examination; the first step is last until a field is chosen
+  std::vector<ExaminedStep> examined_;  ///< in the order of examination; sorted by step after a field has been chosen
   std::pair<std::size_t, std::string> last_opened_;
 };
 
@@ -184,7 +184,7 @@ std::string series_note(const SeriesChoice& choice, std::size_t steps, const std
   for (std::size_t k = 0; k < choice.steps.size(); ++k)
     list += fmt::format("{}{}", k == 0 ? "" : k + 1 == choice.steps.size() ? " and " : ", ", choice.steps[k]);
   return fmt::format("field {} {} chosen by time steps {} of 0 to {}, where it is from {:.6g} to {:.6g}", field,
-                     choice.function ? "and its colors are" : "is", list, steps - 1, choice.range[0], choice.range[1]);
+                     choice.function ? "and its colours are" : "is", list, steps - 1, choice.range[0], choice.range[1]);
 }
 
 }  // namespace tessera::apps

@@ -17,12 +17,12 @@ namespace tessera::apps {
 /// The first, the middle and the last of the selected steps are examined and, only if nothing varies in these steps,
 /// also the two steps midway between them: at most five steps for any length of the series. The field is chosen as for
 /// a file in which each array has the values of the step where its range is widest. Colours and opacities are those of
-/// the step in which this field has the widest range. If the range of all examined steps is more than a tenth wider,
-/// they are for that range.
+/// the step in which this field has the widest range. If the range of all examined steps extends beyond this range by
+/// more than a tenth of its width, colours and opacities cover the range of all examined steps.
 struct SeriesChoice {
   std::string field;                               ///< as in ReadOptions::field; empty: each step has its own choice
   std::vector<std::size_t> steps;                  ///< the examined steps, ascending
-  std::array<double, 2> range{};                   ///< range of the field's values in these steps
+  std::array<double, 2> range{};                   ///< range of the field's values in the examined steps
   std::optional<LoadedTransferFunction> function;  ///< none if a file specifies the function
 };
 
@@ -45,7 +45,8 @@ std::vector<std::size_t> steps_to_examine(std::size_t steps);
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open);
 
-/// Returns a note like "field p and its colours are chosen by time steps 0, 2 and 4 of 5, where it is from 0 to 3".
+/// Returns a note like "field p and its colours are chosen by time steps 0, 2 and 4 of 0 to 4, where it is from 0 to
+/// 3".
 std::string series_note(const SeriesChoice& choice, std::size_t steps, const std::string& field);
 
 }  // namespace tessera::apps

@@ -160,7 +160,8 @@ std::string advice_on_clear(const std::array<double, 2>& range, const FinishedRu
       "the transfer function is transparent over all values of the field, {:.6g} to {:.6g}", range[0], range[1]);
   if (knots.empty() || !run.function.visible(knots.front().value, knots.back().value, emits(run.options)))
     return why + "; give it opacity";
-  return fmt::format("{}; --range {:.6g},{:.6g} stretches it over them", why, range[0], range[1]);
+  return fmt::format("{}; --range {:.6g},{:.6g} stretches the transfer function over these values", why, range[0],
+                     range[1]);
 }
 
 /// Whether a ray inside visible values, as long as a ten-thousandth of the box, would give more than zero in single
@@ -172,7 +173,7 @@ bool would_show(const Dataset& data, const TransferFunction& function, const Ren
 
 std::string advice_on_faint(const MostOfPixels& most_seen, const FinishedRun& run) {
   if (emits(run.options))
-    return fmt::format("no pixel has more light than {:.2g}; give the transfer function brighter colours",
+    return fmt::format("no pixel is brighter than {:.2g}; give the transfer function brighter colours",
                        most_seen.light);
   if (most_seen.alpha == 0 && run.data.mesh_counts().cells_zero_volume > 0) return no_volume;
   const double thickest = diagonal(run.box) * run.function.max_extinction();  // smaller values are zero in single
@@ -203,7 +204,7 @@ EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, con
   if (data.is_grid()) {
     const GridCounters& grid = frame.statistics.grid;
     if (grid.bricks_total > 0 && grid.bricks_invisible == grid.bricks_total) return EmptyReason::blank;
-    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels, since only the box was tested
+    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels: only the box has been tested so far
     if (grid.voxels_visited == 0) return EmptyReason::missed;
     if (has_nothing && data.blank_samples() > 0) return EmptyReason::blank;
     return has_nothing && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;

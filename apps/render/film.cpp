@@ -193,8 +193,8 @@ class Film final : public Sink {
     output_.add(frame, record);
   }
 
-  /// Warns of the first image whose light is so bright that 32-bit floats use more than a quarter of the promised
-  /// error.
+  /// Warns of the first image whose light is so bright that rounding to 32-bit floats causes an error of more than a
+  /// quarter of the promised error.
   void check_light(const Image& image) {
     // With absorption, light is at most the brightest colour.
     const bool may_be_bright = options_.settings.emission == Emission::independent || step_.function().max_color() > 1;
@@ -205,7 +205,7 @@ class Film final : public Sink {
     if (rounding <= *promised / 4) return;
     warned_of_light_ = true;
     output_.warn(fmt::format(
-        "pixels have light up to {:.3g}, which 32-bit floats round by up to {:.2g}; the accuracy {:.2g} is "
+        "the brightest pixel has the value {:.3g}, which 32-bit floats round by up to {:.2g}; the accuracy {:.2g} is "
         "not kept; give `{}--accuracy {:.1g}`, or a transfer function with darker colours",
         brightest, rounding, *promised,
         options_.settings.integrator.kind == IntegratorKind::exact ? "--integrator auto " : "", 8 * rounding));

@@ -15,7 +15,7 @@ Annotation filled(const Annotation& annotation, const FilmFrame& frame, const Da
 void check_annotation(const AnnotationOptions& options) {
   if (!options.annotation) return;
   Annotation annotation = filled_annotation(*options.annotation, {});
-  // The bar's range may depend on the transfer function.
+  // Without a given range, the colour bar's range depends on the transfer function, which is not known yet.
   if (annotation.color_bar && !annotation.color_bar->range) annotation.color_bar.reset();
   validate(annotation, {});
 }

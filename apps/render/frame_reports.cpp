@@ -36,7 +36,7 @@ void FrameReports::add(const Json& frame) {
 
 std::string FrameReports::text(const Json& report) const {
   std::string all = text_of(report, indent);
-  all.resize(all.size() - 2);  // the newline and the bracket that end it
+  all.resize(all.size() - 2);  // removes the newline and the bracket at the end
   all += ",\n  \"frames\": [";
   for (std::size_t at = 0; at < frames_.size();) {
     const std::size_t end = frames_.find('\n', at);

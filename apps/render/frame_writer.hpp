@@ -35,7 +35,7 @@ class FrameWriter {
   FrameWriter(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmTraces& traces,
               bool writes);
 
-  /// Adds a frame to be written. Throws the exception with which an earlier frame could not be written.
+  /// Adds a frame to be written. If an earlier frame could not be written, throws the exception of that frame.
   void add(FinishedFrame frame);
   /// Takes ownership of a frame. After the frame is written, a later frame reuses the memory of its image.
   std::shared_ptr<const RenderedFrame> reusing(RenderedFrame&& rendered);

@@ -19,9 +19,9 @@ void PictureWriter::check(const RenderOptions& options, std::span<const FilmFram
     check_film_file(film);
     for (const FilmFrame& frame : frames)
       if (frame.size != frames.front().size)
-        throw bad_input(fmt::format("{}: a film's frames have one size, the views' are {}x{} and {}x{}; use --size",
-                                    film.string(), frames.front().size.width, frames.front().size.height,
-                                    frame.size.width, frame.size.height));
+        throw bad_input(fmt::format(
+            "{}: all frames of a film must have one size, but the views have the sizes {}x{} and {}x{}; use --size",
+            film.string(), frames.front().size.width, frames.front().size.height, frame.size.width, frame.size.height));
   }
 }
 

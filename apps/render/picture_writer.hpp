@@ -26,7 +26,7 @@ class PictureWriter {
   /// `deep`. Throws Error(system_failure) if an image can no longer be written, although check_film_outputs() found
   /// that it could.
   void write(const Image& image, const DeepImage& deep, const FilmFrame& frame);
-  /// Writes an additional image to a file of its own. Throws the same errors as write().
+  /// Writes an additional image to a separate file. Throws the same errors as write().
   static void write_file(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
   /// To be called after the last frame: makes the films appear.
   void finish();

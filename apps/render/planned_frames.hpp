@@ -12,8 +12,8 @@ namespace tessera::apps {
 /// Returns the frames of a run with all their output files. The outputs of one frame are, in this order:
 ///
 ///     as named    the plan's, in all formats
-///     layers      with --peel, for each of these: `a.exr` has a.layer1.exr, a.layer2.exr ...; none for deep images,
-///                 which contain them
+///     layers      with --peel, for each output as named: `a.exr` has a.layer1.exr, a.layer2.exr ...; none for deep
+///                 images, which contain their layers
 ///     annotation  with --annotation-layer, one file
 ///     cost maps   with --show balance, for each of the above: `a.png` has a.cost.png
 ///

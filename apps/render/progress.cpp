@@ -78,7 +78,7 @@ void StatusLine::begin(const std::string& stage) {
   stage_start_ = Clock::now();
   reading_.reset();
   done_.reset();
-  if (frames_ > 1 && frames_done_ > 0) return;  // the line of the film remains
+  if (frames_ > 1 && frames_done_ > 0) return;  // in a film, the line remains between stages
   const std::lock_guard line(last_line().mutex);
   erase();
 }

@@ -18,8 +18,8 @@
 namespace tessera::apps {
 
 /// A line on stderr with the current stage of a run, its progress if known, and the remaining time. A separate thread
-/// updates the line in place; the line is erased at the end. It appears when a stage has taken a second, which never
-/// happens in most runs, and in a run of many frames as soon as a frame is finished.
+/// updates the line in place; the line is erased at the end. It appears when a stage has taken a second, which does not
+/// happen in most runs. In a run of many frames it appears as soon as a frame is finished.
 class StatusLine {
  public:
   /// Shows nothing unless `shown`.

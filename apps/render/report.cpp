@@ -43,7 +43,7 @@ std::string balance_words(const RenderOptions& options, const FrameRecord& recor
   if (by_rank.size() < 2) return {};
   const std::vector<double> samples(by_rank.begin(), by_rank.end());
   const bool sorts_last = !record.statistics.parts.empty();
-  return fmt::format(", {} processes {}: samples uneven by {:.1f} %", samples.size(),
+  return fmt::format(", {} processes {}: samples per process differ by {:.1f} % of their mean", samples.size(),
                      sorts_last ? "sort-last" : fmt::format("by {}", word(options.settings.ranks.balance)),
                      100 * deviation(samples));
 }
@@ -222,7 +222,7 @@ std::string higher_order_note(double error, double accuracy) {
       fmt::format("higher-order cells are replaced by tets, which changes pixels of the first image by {}",
                   error < 1 ? fmt::format("about {:.2g}", error) : "any amount");
   if (error > accuracy)
-    note += fmt::format(", more than --accuracy {:.2g}; --higher-order-tets allows more of them", accuracy);
+    note += fmt::format(", more than --accuracy {:.2g}; --higher-order-tets allows more tets", accuracy);
   return note;
 }
 

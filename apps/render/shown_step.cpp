@@ -68,10 +68,10 @@ void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   data_.emplace(options_.open(frame.data.files, watched, job_.communicator()));
   step_ = frame.step;
   if (first_ && first_->shows_shape && !data_->shows_shape())
-    throw bad_input(
-        fmt::format("{}: time step {} shows the field '{}', which is constant in the steps examined first, so that "
-                    "earlier steps show the shape; choose the field with --field, or steps with --time-step FIRST:LAST",
-                    file.string(), step_, data_->field_name()));
+    throw bad_input(fmt::format(
+        "{}: time step {} shows the field '{}', but earlier steps show the shape, because this field is constant in "
+        "the steps examined first; choose the field with --field, or steps with --time-step FIRST:LAST",
+        file.string(), step_, data_->field_name()));
   if (const auto time = data_->time(); time && !frame.data.has_time)
     for (FilmFrame& each : frames_)
       if (each.step == step_) each.data.time = *time, each.data.has_time = true;
@@ -104,7 +104,7 @@ void ShownStep::choose_for_all_steps() {
   for (std::size_t k = steps.size(); k-- > 1;)
     if (there[k] == std::byte{0}) {
       output_.warn(
-          fmt::format("time step {} no longer exists: field and colors are chosen from other steps", steps[k]));
+          fmt::format("time step {} no longer exists: field and colours are chosen from other steps", steps[k]));
       steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(k));
     }
   const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
@@ -161,8 +161,8 @@ void ShownStep::shade_by_default() {
 
 void ShownStep::note_method() { output_.note("method", method_json(options_, job_.size())); }
 
-/// Throws if an output is a file that has been read. Files to which the input's files refer are only known after these
-/// have been read. Every rank checks, because each has read its own part.
+/// Throws if an output is a file that has been read. This check follows the reading, because the input's files may
+/// refer to further files. Every rank checks, because each rank has read its own part.
 void ShownStep::check_outputs_are_not_read() const {
   for (const FilmFrame& frame : frames_)
     for (const auto& output : frame.outputs) check_not_read(output);

@@ -210,7 +210,7 @@ def document(section, stresses, rows):
         still = [s for s in mine if all(map(steady, s["methods"].values()))]
         section.text(f"### {title}")
         if still:
-            section.text("These stresses change no method's result (their parameters are in brackets): " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". In them, the default's "
+            section.text("These stresses change no method's result (their parameters are in brackets): " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". In these tests, the default's "
                          f"errors reach {largest('default', still)}; those of `exact` in this section reach {largest('exact', mine)}.")
         section.table("l" * (2 + len(methods)), "stress, parameter", "values", *methods)
         for s in mine:

@@ -18,9 +18,8 @@ struct AmrCube {
 
 /// Cubes that fill a part of space, with values at their corners or in the cubes.
 ///
-/// Invariant  the cubes belong to a lattice and are adjacent like the leaves of a tree: a cube with finer neighbours at
-/// a
-///            face has n x n of them there, each of which may be divided further.
+/// Invariant  the cubes belong to a lattice and are adjacent like the leaves of a tree: where a cube has
+///            finer neighbours at a face, n x n of them cover the face; each may be divided further.
 struct AmrCubes {
   AmrVertices corners;  ///< corners of all cubes
   std::vector<AmrCube> cubes;

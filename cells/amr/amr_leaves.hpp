@@ -40,7 +40,7 @@ struct AmrLattice {
   }
 };
 
-/// A cell that is not covered by a finer one.
+/// A cell that no finer cell covers.
 struct AmrLeaf {
   AmrIndex low;        ///< lowest corner of the leaf
   std::uint32_t cell;  ///< index, in the part, of the cell that supplies the value
@@ -48,9 +48,9 @@ struct AmrLeaf {
   std::int32_t level;  ///< finer than the level of `cell` if finer cells cover a part of that cell
 };
 
-/// The cells of a mesh with refinement levels without those covered by finer cells. They are adjacent without overlap
-/// or gap. A cell and all finer cells inside it form a tree: level l + 1 divides a cell of level l either not at all or
-/// into n^3 cells.
+/// The cells of a mesh with refinement levels, except cells that finer cells cover. The leaves are adjacent without
+/// overlap or gap. A cell and all finer cells inside it form a tree: level l + 1 divides a cell of level l either not
+/// at all or into n^3 cells.
 struct AmrLeaves {
   /// One block of the file.
   struct Part {
@@ -95,7 +95,7 @@ struct AmrBlock {
                                                                        ///< axis; 0 levels: no trees
   std::function<std::vector<double>(std::size_t axis)> coordinates{};  ///< returns the coarsest cells' corners, or
                                                                        ///< nothing
-  std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< no value: stored as another number type
+  std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< no value: unexpected types of numbers
 };
 
 /// Finds the leaves of blocks, whose spacings determine their levels. Throws Error(bad_input) if levels do not nest.

@@ -202,9 +202,9 @@ class Smoothing {
 
 namespace {
 
-/// Computes weights with sum 1 and weighted mean 0 that deviate least from the proportions of the factors; some may be
-/// negative. Returns false and leaves the weights unchanged if there are none, or if they could extrapolate beyond the
-/// range of the values by more than the width of the range.
+/// Computes weights with sum 1 for which the weighted mean of the offsets is 0 and which deviate least from the
+/// proportions of the factors; some may be negative. Returns false and leaves `weights` unchanged if such weights do
+/// not exist, or if they could extrapolate beyond the range of the values by more than the width of the range.
 bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
                       std::span<double> weights) {
   glm::dmat4 moments(0);

@@ -122,7 +122,7 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
     if (part.levels < 1 || part.levels > 64 || part.branching < 2) throw unfit(part, source);
     if (part.branching != first.branching || part.extent != first.extent)
       throw scene::bad_input(
-          fmt::format("{}: its grid differs from that of piece '{}'; write all pieces of one data set",
+          fmt::format("{}: its grid differs from that of piece '{}'; write all pieces from the same data set",
                       piece_words(part, source), first.name));
     levels = std::max(levels, part.levels);
   }
@@ -137,7 +137,7 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
     for (std::size_t p = 1; p < trees.size(); ++p)
       if (coordinates_of(trees[p], a, source) != amr.lattice.corners[a])
         throw scene::bad_input(fmt::format(
-            "{}: its coordinates along {} differ from those of piece '{}'; write all pieces of one data set",
+            "{}: its coordinates along {} differ from those of piece '{}'; write all pieces from the same data set",
             piece_words(trees[p], source), "xyz"[a], first.name));
   }
   TreeLeaves leaves(amr, trees.size() > 1, source);

@@ -23,10 +23,10 @@ AmrCubes cubes_of_points(const AmrLeaves& amr, std::span<const std::vector<doubl
 /// Where the eight leaves around a corner have the same level, a cube of the dual mesh connects their centres. The
 /// remaining space, at the boundary and between levels, is filled with octants of the leaves. The values at their other
 /// corners are computed as follows. If the surrounding leaves have the same level, the value is the mean of the leaves,
-/// which continues the values outwards at the boundary. Otherwise, corners of leaves have a mean with positive weights
-/// that reproduce linear fields, those of largest entropy (Sukumar, "Construction of polygonal interpolants: a maximum
-/// entropy approach", International Journal for Numerical Methods in Engineering 61, 2004), and the middles of edges
-/// and faces have the mean of the corners of the edge or face.
+/// which continues the values outwards at the boundary. Otherwise, the value at a corner of a leaf is a mean with the
+/// positive weights of largest entropy that reproduce linear fields (Sukumar, "Construction of polygonal interpolants:
+/// a maximum entropy approach", International Journal for Numerical Methods in Engineering 61, 2004), and the value in
+/// the middle of an edge or face is the mean of its corners.
 AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values);
 
 /// Computes positive weights with sum 1 for which the weighted mean of the offsets is 0 along all axes where there are

@@ -9,8 +9,8 @@
 
 namespace tessera::cells {
 
-/// Converts polynomials of one degree on a simplex (a segment, triangle or tetrahedron) from their values on its
-/// lattice to Bernstein form, whose coefficients bound them: a polynomial is between its least and greatest
+/// Converts polynomials of one degree on a simplex (a segment, triangle or tetrahedron) from their values on the
+/// simplex's lattice to Bernstein form. The coefficients bound a polynomial: it is between its least and greatest
 /// coefficient.
 ///
 /// Source  Farin, "Triangular Bernstein-Bezier patches", Computer Aided Geometric Design 3, 1986.

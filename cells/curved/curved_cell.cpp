@@ -143,8 +143,8 @@ void CurvedCell::make_inside() {
 }
 
 /// The coefficient of a bubble is the difference between the node in the middle of a face or cell and the sum of the
-/// previous functions there, divided by the value of the bubble's function there. Without the node it is 0, except that
-/// the inside of a wedge is interpolated between its triangles.
+/// previous functions there, divided by the value of the bubble's function there. Without the node the coefficient is
+/// 0, except that the inside of a wedge is interpolated between its triangles.
 void CurvedCell::make_bubbles() {
   const auto faces = faces_of(lattice_->family);
   const auto middle = [](const LatticePlace& a, const LatticePlace& b) {

@@ -22,9 +22,9 @@ inline constexpr std::int32_t cell_unit = 1 << 20;
 ///
 /// Functions  The cell is isoparametric: position and field use the same functions, Lagrange's on the lattice's nodes.
 ///            Missing nodes of serendipity cells are first computed from their polynomials. A node in the middle of a
-///            triangle adds a function that is 0 on the edges, and a node inside the cell one that is 0 on the faces.
-///            Nodes of Bezier cells are Bernstein coefficients; with weights, position and field are weighted sums
-///            divided by the sum of weights. Pyramids have functions of their own (cells/curved/curved_pyramid.hpp).
+///            triangle adds a function that is 0 on the edges, and a node inside the cell adds one that is 0 on the
+///            faces. Nodes of Bezier cells are Bernstein coefficients; with weights, position and field are weighted
+///            sums divided by the sum of weights. Pyramids have other functions (cells/curved/curved_pyramid.hpp).
 /// Shared     A place on a face or edge is computed from the nodes of that face or edge alone, in an order that depends
 ///            on the corners' positions. So both cells at a face get the same bits, however the cells are numbered.
 class CurvedCell {
@@ -35,8 +35,8 @@ class CurvedCell {
   void set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
            std::span<const double> weights = {});
 
-  /// Returns a bit for each face that contains a corner. The bits of any other place are those that all of its
-  /// neighbours in a subdivision have in common.
+  /// Returns a bit for each face that contains a corner. The bits of a point added between other points are the bits
+  /// that all of these points have in common.
   [[nodiscard]] unsigned faces_of_corner(std::size_t corner) const { return corner_faces_[corner]; }
   [[nodiscard]] CellPlace place_of_corner(std::size_t corner) const;
 

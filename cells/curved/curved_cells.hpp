@@ -54,7 +54,7 @@ class CurvedCells {
   /// settings().limit tets.
   void split(std::size_t cell, CurvedWork& work) const;
 
-  /// Calls `report` for each initial tet of all cells, with the deviation of its edges in tolerances.
+  /// Calls `report` for each initial tet of all cells, with the deviation of its edges as a multiple of the tolerance.
   void tally_excess(const std::function<void(double excess)>& report) const;
 
   /// Whether the cells become more tets than the settings allow. Determined by dividing the cells.

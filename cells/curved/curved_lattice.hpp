@@ -85,8 +85,8 @@ inline constexpr int highest_pyramid_order = 8;
 ///         vtkHigherOrderWedge.h of 9.1). VTK does not have Lagrange pyramids yet. The order of ours is: corners, edges
 ///         (0 1, 1 2, 3 2, 0 3, 0 4, 1 4, 2 4, 3 4, each from the first corner), the base row by row along r, the
 ///         triangles on the base's edges in the order of these edges, row by row from the base up, each row in the
-///         direction of the edge, and layers of the inside from the base up, row by row. For second order, no other
-///         order extends that of quadratic pyramids.
+///         direction of the edge, and layers of the inside from the base up, row by row. For second order, the
+///         first 13 nodes are in the order of VTK's quadratic pyramids, and the last one is the base's centre.
 std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees = {});
 

@@ -28,7 +28,8 @@ void legendre(int n, double x, std::span<double> out) {
   }
 }
 
-/// Evaluates products of degree i across, j across and up to n - max(i, j) along, times height^max(i, j).
+/// Evaluates the products of polynomials of degree i in x, j in y and up to n - max(i, j) in height, times
+/// height^max(i, j).
 void lagrange_functions(int n, double x, double y, double height, std::span<double> out) {
   std::array<double, highest_pyramid_order + 1> across_x{}, across_y{}, along{};
   legendre(n, x, across_x), legendre(n, y, across_y), legendre(n, 2 * height - 1, along);

@@ -12,9 +12,8 @@ namespace tessera::cells {
 
 /// Evaluates a basis of a pyramid's functions, one per node; they are rational in (r, s, t).
 ///
-/// 13 nodes  the serendipity hexahedron's functions with one face collapsed to a point, corrected to be quadratic on
-/// the
-///           triangles (Felippa, "Advanced Finite Element Methods", University of Colorado, chapter on pyramids)
+/// 13 nodes  the serendipity hexahedron's functions with one face collapsed to a point, corrected to be quadratic
+///           on the triangles (Felippa, "Advanced Finite Element Methods", University of Colorado, chapter on pyramids)
 /// 19 nodes  VTK's functions: quadratic with a cubic bubble on triangles, biquadratic on the base
 /// 18 nodes  as for 19 nodes without the last function, because there is no inner node
 /// others    Lagrange's functions on the lattice: all polynomials of the order, and functions that complete them on the

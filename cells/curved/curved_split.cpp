@@ -20,13 +20,13 @@ using scene::Tet;
 constexpr std::array<std::array<int, 2>, 6> edges_of_tet = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 constexpr std::array<std::array<int, 3>, 4> faces_of_tet = {{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// Coefficients on edges are smaller than those inside: by a factor of up to 1.5 for a second-degree polynomial written
-/// in a higher degree. If edges are halved down to the tolerance divided by this factor, inner points, which do not
-/// halve anything, are rarely needed.
+/// Factor by which the coefficients inside a tet may exceed those on its edges: up to 1.5 for a second-degree
+/// polynomial written in a higher degree. If edges are halved down to the tolerance divided by this factor, inner
+/// points, which do not shorten edges, are rarely needed.
 double room_inside(int degree) { return degree <= 2 ? 1 : 1.5; }
 
-/// Rational functions have their largest curvature near one corner, the apex of a pyramid. Pyramids became three to
-/// four times the number of tets predicted from their initial edges; three to four is this factor to the power of 3/2.
+/// Rational functions have their largest curvature near one corner, the apex of a pyramid. Pyramids needed three to
+/// four times as many tets as predicted from their initial edges, which is this factor to the power of 3/2.
 constexpr double worst_of_fractions = 2.5;
 
 }  // namespace
@@ -166,8 +166,8 @@ std::span<const glm::dvec4> CurvedSplitter::departures(Corners corners) {
   return coefficients_;
 }
 
-/// Returns a lower bound of the weights by which the samples of departures() are multiplied: the least of their
-/// coefficients.
+/// Returns a lower bound of the weights by which the samples of departures() are multiplied: the least of the weights'
+/// Bernstein coefficients.
 double CurvedSplitter::least_weight(std::span<const CellPlace> places, unsigned faces, const BernsteinForm& form) {
   std::array<double, 4> at_corner{};
   double least = std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ CurvedSplitter::Edge& CurvedSplitter::edge(std::uint32_t a, std::uint32_t b) {
   const auto [place, is_new] = edges_.try_emplace(key, Edge{0, none});
   if (!is_new) return place->second;
   const std::array<std::uint32_t, 2> ends = {a, b};
-  // Neighbours could not both identify a place that is not a whole number of units.
+  // An edge is only halved if its midpoint is a whole number of units; otherwise the neighbours might not agree on it.
   const CellPlace &p = places_[a], &q = places_[b];
   const bool can_be_halved = ((p[0] + q[0]) | (p[1] + q[1]) | (p[2] + q[2])) % 2 == 0;
   if (can_be_halved) {
@@ -314,9 +314,9 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
     const std::array<std::uint32_t, 3> face = {tet[static_cast<std::size_t>(i)], tet[static_cast<std::size_t>(j)],
                                                tet[static_cast<std::size_t>(k)]};
     const int degree = cell_.degree_on(faces_on(face));
-    // If both have the same degree, the coefficients of a face are among those of the tet. If all of these are below
-    // the tolerance by more than rounding, the face is, too, from either side. If the face has a lower degree, its
-    // coefficients are larger than the tet's.
+    // If face and tet have the same degree, the face's coefficients are among those of the tet. If all of the tet's
+    // coefficients are below the tolerance by more than rounding, the face is not divided, and the tet on its other
+    // side leads to the same decision. If the face has a lower degree, its coefficients are larger than the tet's.
     if (degree < 3 || (excess <= 0.9 && nets_are_exact_ && degree == degree_)) continue;
     if (!(excess_of(departures(face)) > 1)) continue;
     const std::uint32_t point = point_within(face);

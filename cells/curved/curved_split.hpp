@@ -25,8 +25,8 @@ struct CurvedTolerance {
   double field = std::numeric_limits<double>::infinity();
 };
 
-/// Bounds of the deviation. `field` is the error at a fixed point in space. To first order, the position error
-/// contributes to it by the cell's slopes at the tet's corners.
+/// Bounds of the deviation. `field` is the error at a fixed point in space. It includes the first-order effect of the
+/// position error: this error times the slopes of the cell's field at the tet's corners.
 struct CurvedError {
   double position = 0, field = 0;
   void add(const CurvedError& other);
@@ -71,8 +71,9 @@ class CurvedSplitter {
   [[nodiscard]] std::span<const glm::dvec4> added() const { return std::span(values_).subspan(corners_); }
   [[nodiscard]] const CurvedError& error() const { return error_; }
 
-  /// Calls `report` for each of a cell's initial tets, with the deviation of its worst edge in tolerances. The number
-  /// is larger than the deviation if the tet will need more tets than one of a polynomial cell.
+  /// Calls `report` for each of a cell's initial tets, with the deviation of its worst edge as a multiple of the
+  /// tolerance. The reported number is larger than the deviation if the tet will need more tets than one of a
+  /// polynomial cell.
   void tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
                     std::span<const double> weights, std::span<const scene::Tet> first,
                     const std::function<void(double excess)>& report);
@@ -80,7 +81,7 @@ class CurvedSplitter {
  private:
   using Corners = std::span<const std::uint32_t>;
   struct Edge {
-    float excess;                 ///< deviation in tolerances; edges with more than 1 are halved
+    float excess;                 ///< deviation as a multiple of the tolerance; edges above 1 are halved
     std::uint32_t middle = none;  ///< the midpoint, once the edge is halved
   };
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();

@@ -16,8 +16,8 @@ constexpr scene::Box no_box{glm::dvec3(std::numeric_limits<double>::infinity()),
                             glm::dvec3(-std::numeric_limits<double>::infinity())};
 
 /// An error of the position, relative to the diagonal, changes pixels at rays along a surface about four times as much
-/// as the same error of the field relative to its range. For a block of quadratic hexahedra, a quarter needs the fewest
-/// tets for a given error.
+/// as the same error of the field relative to its range. For a block of quadratic hexahedra, a relative position
+/// tolerance of a quarter of the relative field tolerance needs the fewest tets for a given error.
 constexpr double position_share = 0.25;
 
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();

@@ -15,7 +15,7 @@
 namespace tessera::cells {
 
 /// Histogram of the deviations of higher-order cells' initial tets. Bin b counts tets whose edges deviate by 2^(b/2)
-/// tolerances; the first bin also counts smaller deviations. The histograms of parts of a mesh can be added.
+/// times the tolerance; the first bin also counts smaller deviations. The histograms of parts of a mesh can be added.
 using ExcessTally = std::array<std::uint64_t, 128>;
 
 /// Returns the box of the points of blocks with higher-order cells; low > high if there are none.
@@ -27,7 +27,7 @@ scene::Box joined(const scene::Box& a, const scene::Box& b);
 CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box, const FieldChoice& choice,
                                std::span<const FieldSummary> fields);
 
-/// Tallies the deviations of the higher-order cells of some blocks, in tolerances of `asked`.
+/// Tallies the deviations of the higher-order cells of some blocks, as multiples of the tolerance of `asked`.
 ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& asked);
 
 /// Returns the approximate default limit of the number of a mesh's tets. It is 2^18 plus twice the number of tets that

@@ -38,8 +38,8 @@ class DeepMerger {
  public:
   explicit DeepMerger(double accuracy) : accuracy_(accuracy) {}
 
-  /// Takes the next piece along the ray. If the piece ends the current sample, appends that sample. A `surface` is a
-  /// point, which is not merged.
+  /// Takes the next piece along the ray. If the piece ends the current sample, appends that sample. A `surface` has no
+  /// thickness and is not merged.
   void add(const DeepSample& piece, std::vector<DeepSample>& samples, bool surface = false);
 
   /// Appends the last sample, if one has begun.

@@ -95,8 +95,8 @@ void PieceCutter::cut(const DeepPiece& segment, double length_per_depth, double&
     const Optics all = optics(interval, s0);
     return cut_linear(segment, all, all, length_per_depth, transmittance, pieces);
   }
-  // The knots strictly inside the segment's range of scalars. The two knots of a step cut at the same point, with
-  // nothing between the cuts.
+  // The segment is cut at the knots strictly inside its range of scalars. The two knots of a step cut at the same
+  // depth, so the piece between them is empty.
   const double low = std::min(s0, s1), high = std::max(s0, s1);
   const auto first =
       static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), low, value_above) - knots_.begin());

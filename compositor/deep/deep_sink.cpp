@@ -85,7 +85,8 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
   timer.record("composite");
 }
 
-/// Adds a surface, which is a point in depth. It waits in the list of pieces, which are in order for each pixel.
+/// Adds the crossing of a surface to the list of pieces, as a piece of length zero. The pieces of each pixel are in
+/// order of depth.
 void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value) {
   crossings_.push_back({pieces_.size(), crossing, value});
   pieces_.push_back({depth, depth, 0, 0});

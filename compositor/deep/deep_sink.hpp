@@ -16,10 +16,11 @@
 namespace tessera::compositor {
 
 /// Computes deep samples and the image: cuts a tile's ray segments into pieces, integrates the pieces, and merges them.
-/// The integrator must be `exact`, so that the light of a segment is that of its pieces.
+/// The integrator must be `exact`, so that the pieces of a segment together give the segment's light.
 class DeepSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The values of `scene`, the window's image and `collector` must outlive this object. Threads share `collector`.
+  /// The objects to which `scene` points, the window's image and `collector` must outlive this object. Threads share
+  /// `collector`.
   DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, double accuracy, DeepTarget& collector);
 
@@ -46,7 +47,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   double accuracy_;
   DeepTarget* collector_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< segments taken: in finished rectangles; in this rectangle
   std::vector<DeepMerger> mergers_;                 ///< one per pixel
   std::vector<double> transmittance_before_, length_per_depth_;
   std::vector<Ray> rays_;  ///< one per pixel
@@ -65,8 +66,8 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::vector<PixelSample> samples_;  ///< samples of all pixels; those of one pixel are in order
 };
 
-/// Appends the samples of one pixel, in order, as floats. Rounding depths keeps their order. Samples that become points
-/// at the same depth by rounding are combined. Samples without alpha and light are left out.
+/// Appends the samples of one pixel, in order, as floats. Rounding depths keeps their order. If rounding turns several
+/// samples into points at one depth, they are combined. Samples without alpha and light are left out.
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

@@ -7,7 +7,8 @@
 namespace tessera::compositor {
 namespace {
 
-/// Lanes pass a segment to RayLayers a little before the layer ends; RayLayers then decides in double precision.
+/// The lanes, which use floats, pass a segment to RayLayers slightly before a layer ends; RayLayers then finds the end
+/// in double precision.
 constexpr double margin = 1 + 2e-6;
 
 }  // namespace
@@ -53,7 +54,7 @@ integrals::OpenLayer LayerSink::layer_of(std::size_t p) const {
   layer.red = state_.red[p], layer.green = state_.green[p], layer.blue = state_.blue[p];
   // The alpha of a lane may exceed 1 by rounding.
   layer.transmittance = std::max(state_.transmittance[p], 0.0);
-  layer.optical_depth = -std::log(layer.transmittance);  // infinite where it is opaque
+  layer.optical_depth = -std::log(layer.transmittance);  // infinite if the layer is opaque
   if (std::isinf(layer.front) && state_.first_back[p] != WindowState::not_yet)
     layer.front = first_visible_depth(
         lattice,
@@ -67,7 +68,7 @@ integrals::OpenLayer LayerSink::layer_of(std::size_t p) const {
   return layer;
 }
 
-/// Continues a pixel with this layer.
+/// Makes `layer` the current layer of a pixel.
 void LayerSink::resume(std::size_t p, const integrals::OpenLayer& layer) {
   cut_[p] = layer;
   state_.red[p] = layer.red, state_.green[p] = layer.green, state_.blue[p] = layer.blue;

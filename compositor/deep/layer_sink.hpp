@@ -14,21 +14,22 @@
 
 namespace tessera::compositor {
 
-/// PeelSink on the lattice, for absorption without surfaces. Segments are composited in lanes, except those in which a
-/// layer ends, and thick ones.
+/// Does the same as PeelSink, but on the lattice, and only for absorption without surfaces. Segments are composited in
+/// SIMD lanes, except segments in which a layer ends, and segments with a large alpha (WindowLayers::most_alpha).
 ///
-/// Errors of a layer's optical depth move its end, and so move light to another layer, where nothing attenuates it. At
-/// the end, the optical depth is d = -log(1 - threshold).
+/// An error in a layer's optical depth moves the depth at which the layer ends. Light near this end is then in the
+/// wrong layer: in the next layer, the first one does not attenuate it. At its end, a layer has the optical depth
+/// d = -log(1 - threshold).
 ///   - Lanes have a relative error of e in a segment's alpha a. This changes the optical depth by e a / (1 - a), which
 ///     is at most 1.5 e times the segment's optical depth for a <= 1/2, so 1.5 e d in all.
 ///   - Rounding scalars to the lattice changes the extinction in piece i of the transfer function by at most
-///     E (1 / L + sigma_i) / 2 (frame/mesh/lattice_frame.cpp). A ray's paths y_i in the pieces satisfy sum y_i <= L and
-///     sum sigma_i y_i <= d, so the optical depth changes by at most E (1 + d) / 2.
-/// scene::error_budget::scalars_of_layers() has the sum.
+///     E (1 / L + sigma_i) / 2 (frame/mesh/lattice_frame.cpp). The lengths y_i of a ray's paths in the pieces satisfy
+///     sum y_i <= L and sum sigma_i y_i <= d, so the optical depth changes by at most E (1 + d) / 2.
+/// scene::error_budget::scalars_of_layers() computes the sum of both errors.
 class LayerSink final : public TileSink<LatticeEncoding>, private WindowLayers {
  public:
-  /// `function` is the transfer function on the lattice (FrameLattice::function). The values of `scene`, the window's
-  /// image and `target` must outlive this object. Threads share `target`.
+  /// `function` is the transfer function on the lattice (FrameLattice::function). The objects to which `scene` points,
+  /// the window's image and `target` must outlive this object. Threads share `target`.
   LayerSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
             const Peel& peel, DeepTarget& target);
 
@@ -55,9 +56,10 @@ class LayerSink final : public TileSink<LatticeEncoding>, private WindowLayers {
   scene::PixelRect rect_{0, 0, 0, 0};
   projection::OpenPixels open_{};
   int open_count_ = 0;
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< segments taken: in finished rectangles; in this rectangle
   WindowState state_;
-  /// The layer of each pixel after its last cut. What the lanes have added since then is in `state_`.
+  /// The layer of each pixel after the last segment that was added in double precision. `state_` also contains what the
+  /// lanes have added since.
   std::vector<integrals::OpenLayer> cut_;
   std::vector<double> length_per_depth_;
   integrals::SegmentBatch batch_;

@@ -101,7 +101,7 @@ void PeelSink::integrate_waiting(scene::StageTimer& timer) {
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
     const Waiting& w = waiting_[k];
     batch_.length[k] = (w.back - w.front) * length_per_depth_[w.pixel];
-    // A crossing's front scalar is not a field value.
+    // The front scalar of a crossing is a mark, not a field value.
     batch_.scalar_front[k] = is_crossing(w) ? w.scalar_back : w.scalar_front;
     batch_.scalar_back[k] = w.scalar_back;
   }

@@ -12,7 +12,7 @@
 
 namespace tessera::compositor {
 
-/// A layer of the pixel with this number in a rectangle.
+/// A layer, and the number of its pixel in the rectangle.
 struct PixelLayer {
   std::uint32_t pixel;
   integrals::RayLayer layer;
@@ -24,7 +24,8 @@ struct PixelLayer {
 /// A pixel whose image is opaque still accepts segments until its last layer is opaque as well.
 class PeelSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The values of `scene`, the window's image and `target` must outlive this object. Threads share `target`.
+  /// The objects to which `scene` points, the window's image and `target` must outlive this object. Threads share
+  /// `target`.
   PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, const Peel& peel, DeepTarget& target);
 
@@ -51,7 +52,7 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   integrals::RayLayers layers_;
   DeepTarget* target_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< in finished rectangles; in this rectangle
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< segments taken: in finished rectangles; in this rectangle
   std::vector<integrals::OpenLayer> rays_;          ///< one per pixel
   std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_;

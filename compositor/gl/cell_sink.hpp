@@ -11,9 +11,9 @@
 
 namespace tessera::compositor {
 
-/// Sends a tile's cells unchanged, so that the device of the tile's compositor rasterizes them. They precede this
-/// process's other parts of the tile. The parts with cells state no depth to which they are complete, so that no part
-/// of the tile is composited without the cells.
+/// Sends a tile's cells unchanged, so that the device of the tile's compositor rasterizes them. The parts with cells
+/// precede this process's other parts of the tile. They do not state a depth up to which the tile is complete, so that
+/// the compositor composites nothing before it has all cells.
 ///
 /// One sink serves one thread.
 class CellSink {

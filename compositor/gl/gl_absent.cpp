@@ -13,7 +13,7 @@ GlCompositor::GlCompositor(gl::Platform, const GlSettings&, scene::Trace*) : com
 }
 GlCompositor::~GlCompositor() = default;
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): the other build keeps them
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the OpenGL build stores them
 std::future<std::vector<GlLight>> GlCompositor::composite(GlFragments, const GlRules&) { return {}; }
 // NOLINTNEXTLINE(performance-unnecessary-value-param): likewise
 std::future<std::vector<std::uint32_t>> GlCompositor::count(std::shared_ptr<const GlCells>, const scene::PixelRect&,

@@ -100,9 +100,9 @@ class GlCompositor::Worker {
     }
   }
 
-  /// Returns jobs of one frame, as many as fit in one batch. If `wait` is set, waits for jobs. Returns no jobs at the
-  /// end, if there are none now, or if cells are to be counted (counting_): counting has priority, because the jobs of
-  /// the cells' tile follow it.
+  /// Returns jobs of one frame, as many as fit in one batch. If `wait` is set, waits for jobs. Returns no jobs if the
+  /// compositor is ending, if no jobs are queued, or if cells are to be counted (`counting_`). Counting has priority
+  /// because the jobs of the cells' tile need its result.
   Batch next(bool wait) {
     std::unique_lock lock(mutex_);
     if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty() || !counts_.empty(); });

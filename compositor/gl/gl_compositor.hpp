@@ -29,7 +29,7 @@ struct GlSettings {
   // For tests:
   int texture_limit = 0;  ///< fragment: largest size of a texture; 0: the largest that the device supports
   GlFault fault = GlFault::none;
-  int fault_after = 0;  ///< number of batches before the fault
+  int fault_after = 0;  ///< number of batches before the simulated fault
 };
 
 /// A device that composites tiles. Its own thread owns the context. Many tiles may be in flight: their jobs are

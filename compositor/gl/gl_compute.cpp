@@ -138,7 +138,7 @@ class ComputeKernel final : public GlKernel {
     GLuint first_list = 0;   ///< first list in the tables, counted in entries of four integers
   };
 
-  /// The lists are compiled when the first cells arrive.
+  /// Returns the lists of cells, whose shaders are compiled when the first cells arrive.
   GlCellLists& cell_lists() {
     if (!cell_lists_) cell_lists_.emplace(*context_, settings_.batch_cells, trace_);
     return *cell_lists_;
@@ -235,7 +235,7 @@ class ComputeKernel final : public GlKernel {
 void GlIntegrals::prepare(const gl::Program& program, const GlRules& rules) {
   const integrals::LaneTable& table = *rules.table;
   if (frame_ != static_cast<std::int64_t>(rules.frame)) {
-    fence_.wait();  // the last table has been uploaded
+    fence_.wait();  // waits until the previous table has been copied from `upload_`
     const std::size_t bytes = table.rows.size() * sizeof(float);
     upload_.reserve(bytes);
     table_.reserve(bytes);

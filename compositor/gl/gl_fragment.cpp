@@ -33,7 +33,7 @@ class FragmentKernel final : public GlKernel {
         tile_(context),
         timer_(context, trace) {
     context.gl().CreateVertexArrays(1, &no_vertices_);
-    context.gl().BindVertexArray(no_vertices_);  // a core context does not draw without one
+    context.gl().BindVertexArray(no_vertices_);  // a core context draws only if a vertex array is bound
   }
   ~FragmentKernel() override { context_->gl().DeleteVertexArrays(1, &no_vertices_); }
 
@@ -73,7 +73,7 @@ class FragmentKernel final : public GlKernel {
   }
 
   /// Composites neighbouring pixels of a scanline together: the whole scanline, as in the paper, unless the texture
-  /// does not have enough room or the lists differ so much in length that most elements would be null.
+  /// does not have enough room or the lists differ so much in length that most elements would be padding.
   void composite_line(const GlJob& job, Lists lists, int line) {
     constexpr int most_padding = 3;  // powers of two
     const auto width = static_cast<std::uint32_t>(job.fragments.width);
@@ -115,7 +115,7 @@ class FragmentKernel final : public GlKernel {
     timer_.record("composite", longest);
   }
 
-  /// The padded lists of neighbouring pixels; pixels without a list get only null elements.
+  /// Writes the padded lists of neighbouring pixels; pixels without a list get only padding.
   void fill(const GlFragments& fragments, Lists lists, const GlBitonicTexture::Layout& layout, int pixels) {
     const std::size_t stride = layout.stride();
     segments_.assign(static_cast<std::size_t>(pixels) * stride, {0, 0, 0, GlBitonicTexture::null_depth});

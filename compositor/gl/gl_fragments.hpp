@@ -61,7 +61,7 @@ struct GlLight {
   std::uint32_t first;        ///< the first fragment along the ray with optical depth; no_fragment: there is none;
                               ///< rasterized_one: the device made it
   std::uint32_t front, back;  ///< keys of the first fragment if it is a rasterized_one
-  float along;                ///< position where its light begins, from 0 at the front to 1 at the back
+  float along;  ///< position in the first fragment where its light begins, from 0 at its front to 1 at its back
   static constexpr std::uint32_t no_fragment = 0xffffffff, rasterized_one = 0xfffffffe;
 };
 static_assert(sizeof(GlLight) == 32);

@@ -35,8 +35,8 @@ std::uint32_t ordered(float x) {
 }
 
 /// Returns a scalar in the table's units. In the range of the transfer function's knots, it is the result of
-/// lane_scalar(), so that a value at a step stays there. Beyond that range, where rounding to whole units has no
-/// benefit, it is not rounded.
+/// lane_scalar(), so that a value at a step of the function stays at the step. Outside that range, rounding to whole
+/// units has no benefit, and the scalar is not rounded.
 float device_scalar(double value, const scene::Lattice& units) {
   const double n = (value - units.scalar_origin) / units.scalar_unit;
   return std::abs(n) < scene::Lattice::limit ? integrals::lane_scalar(value, units.scalar_origin, units.scalar_unit)
@@ -128,7 +128,7 @@ class GlMerger final : public TileMerger {
 
   void advance(double final_depth) override {
     const bool all = std::isinf(final_depth) && final_depth > 0;
-    if (!all && !cells_->records.empty()) return;  // the device determines the segments before this depth
+    if (!all && !cells_->records.empty()) return;  // segments of cells are not known before the device rasterizes
     if (!all && fragments_.size() < patient_fragments &&
         fragments_.size() * sizeof(Fragment) < context_.budget_bytes / 2)
       return;
@@ -146,7 +146,7 @@ class GlMerger final : public TileMerger {
       composite(fragments_);
       fragments_.clear();
     }
-    if (!cells_->records.empty()) cells_ = std::make_shared<GlCells>();  // the device may still use the last ones
+    if (!cells_->records.empty()) cells_ = std::make_shared<GlCells>();  // the device may still use the previous cells
   }
 
   MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
@@ -161,8 +161,8 @@ class GlMerger final : public TileMerger {
 
   [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
   /// Whether segments are integrated here, in double precision; the device then only sorts and composites their light.
-  /// This is necessary if depths or scalars do not fit the lattice (very steep or thick transfer functions), because
-  /// they then exceed the float accuracy of `exact`.
+  /// This is necessary for `exact` if a very steep or opaque transfer function does not allow a lattice: the device's
+  /// floats are then not accurate enough.
   [[nodiscard]] bool integrates_here() const {
     return !on_lattice() && rules_.samples == 0 && context_.device->method() == GlMethod::compute;
   }
@@ -389,7 +389,7 @@ class GlMerger final : public TileMerger {
       out.lists.push_back({static_cast<std::uint32_t>(p), element, by.count(p), by.count(p) - by.given(p)});
       for (std::uint32_t i = by.begin_given[p]; i < by.begin_given[p + 1]; ++i) {
         const Fragment& f = fragments[by.order[i]];
-        // With Key::back, the front is not part of the order.
+        // With Key::back, fragments are not ordered by their fronts.
         out.keys.push_back(
             {by_back_ ? by.steps.of(f.back) : by.steps.of(f.front), by.steps.of(f.back), f.tie, element++});
         out.values.push_back(f.value);

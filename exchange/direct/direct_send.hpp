@@ -27,8 +27,9 @@ PixelRect band_of(const PixelRect& area, int number, int ranks);
 /// higher up in the image gets a higher band, so that many of its pixels stay on the rank (docs/RESULTS.md, Exchanges).
 std::vector<int> band_numbers(std::span<const PixelRect> own);
 
-/// The ranks to which the rank at `place` of a depth order (ranks, front to back) sends. The order of the result is the
-/// order of sending: first the ranks behind this one, from the nearest on, then those in front, from the nearest on.
+/// Returns the ranks to which a rank sends, in the order of sending. `order` contains all ranks, front to back; the
+/// sender is at position `place`. It sends first to the ranks behind it, then to those in front of it, in both cases
+/// beginning with the nearest.
 std::vector<int> send_order(std::span<const int> order, std::size_t place);
 
 /// A rank whose pixels are composited, and whether they go in front of or behind the pixels composited so far.
@@ -36,11 +37,11 @@ struct Layer {
   int rank;
   bool in_front;
 };
-/// The ranks whose pixels the rank at `place` composites with its own, in the order of compositing: first the ranks in
-/// front of this one, from the nearest on, then those behind, from the nearest on. So each rank is adjacent in depth to
-/// the pixels composited so far, and the bits of the image do not depend on the order of arrival. (Algorithm 1 of the
-/// thesis begins with the ranks in front and puts the rank's own pixels behind them; here, the rank's own pixels come
-/// first because they are available at once.)
+/// Returns the ranks whose pixels the rank at position `place` composites with its own pixels, in the order of
+/// compositing: first the ranks in front of it, then those behind it, in both cases beginning with the nearest. So each
+/// rank is adjacent in depth to the pixels composited so far, and the bits of the image do not depend on the order of
+/// arrival. (Algorithm 1 of the thesis begins with the ranks in front and puts the rank's own pixels behind them; here,
+/// the rank's own pixels come first because they are available at once.)
 std::vector<Layer> receive_order(std::span<const int> order, std::size_t place);
 
 struct DirectSendTask {
@@ -62,8 +63,8 @@ struct DirectSendResult {
 ///
 ///   asynchronous  packets of `packet_rows` rows are sent one by one, and packets that have arrived meanwhile are
 ///                 composited: a band is complete soon after its last packet has arrived
-///   synchronous   rank p sends all pixels of the band of rank p + 1 and waits for those of its own band from rank p -
-///                 1, then the same with p + 2 and p - 2, and so on; it composites when it has received all of them
+///   synchronous   in step k = 1, 2, ..., rank p sends to rank p + k all pixels of that rank's band, and waits for the
+///                 pixels for its band from rank p - k; after the last step, it composites all of them
 class DirectSender {
  public:
   /// `transport` must outlive this object.

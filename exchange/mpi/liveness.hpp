@@ -10,8 +10,8 @@
 
 namespace tessera::exchange {
 
-/// Sends and checks heartbeats from the call of watch() on. Before this call, it sends none and keeps those of other
-/// ranks.
+/// Sends and checks heartbeats from the call of watch() on. Before this call, it sends no heartbeats and stores those
+/// of other ranks.
 class Liveness {
  public:
   /// Starts the watch. May be called by any thread, before or during the other calls.
@@ -20,7 +20,7 @@ class Liveness {
   /// Must be called repeatedly, with this rank and the number of ranks. Returns the messages to send now. Throws
   /// Error(system_failure) if a message that came before watch() is not a message of Heartbeats.
   std::vector<Heartbeats::Outgoing> turn(int rank, int size);
-  /// Records that another message than a heartbeat has come from rank `from`.
+  /// Records that a message other than a heartbeat has come from rank `from`.
   void heard(int from);
   /// Takes a message that another rank's turn() returned. Throws like Heartbeats::take().
   void take(Message message);

@@ -18,7 +18,7 @@ MpiPort::MpiPort(std::optional<int>) {
 }
 MpiPort::~MpiPort() = default;
 void MpiPort::start() {}
-void MpiPort::send(int, int, Bytes) {}  // NOLINT(performance-unnecessary-value-param): the other port keeps them
+void MpiPort::send(int, int, Bytes) {}  // NOLINT(performance-unnecessary-value-param): with MPI, bytes are stored
 void MpiPort::complete() {}
 bool MpiPort::is_sending() const { return false; }
 void MpiPort::for_each_receiver(const std::function<void(int)>&) const {}

@@ -145,8 +145,8 @@ bool MpiPort::take() {
 }
 
 std::optional<MpiPort::Arrived> MpiPort::next() {
-  // A complete message does not wait for a large one of another rank that was announced before it; the messages of one
-  // rank stay in order.
+  // A complete message does not wait for an incomplete message of another rank, even if that message was announced
+  // earlier. The messages of one rank stay in order.
   constexpr std::size_t most_looked_at = 64;
   State& s = *state_;
   std::vector<int> waited_for;

@@ -130,7 +130,7 @@ class MpiTransport::Engine {
     try {
       post(bells);
       port_.complete();
-      // MPI may have delayed a message until now.
+      // Rings again for messages that MPI has not sent completely: it may have delayed them until this call.
       if (bells != nullptr) port_.for_each_receiver([&](int to) { bells->ring(to); });
       const bool came = port_.take();
       return deliver() || came;

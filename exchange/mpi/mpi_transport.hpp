@@ -28,15 +28,15 @@ MpiShape mpi_shape(int fortran_handle);
 /// One thread of this object makes all MPI calls. MPI_THREAD_FUNNELED is therefore enough in MPI's world; if a caller
 /// uses MPI itself, MPI_THREAD_MULTIPLE is needed. The thread receives messages at any time, so that no send waits for
 /// the receiver to poll, and a rank that waits sleeps instead of spinning. The thread polls for messages whenever it
-/// sends, 100 microseconds after a message came, and then less and less often, down to every 2 milliseconds; after
-/// set_working(true), every 2 to 5 milliseconds. If all ranks have bells, it polls when they ring, unless the rank is
-/// working, and otherwise every 20 milliseconds.
+/// sends. It also polls 100 microseconds after a message came; while no further message comes, the pause between two
+/// polls doubles up to 2 milliseconds. After set_working(true), pauses are 2 to 5 milliseconds. Unless the rank is
+/// working, the thread also polls when its bell rings; if all ranks have bells, pauses are then up to 20 milliseconds.
 ///
 /// Errors: a rank that fails reports its error to rank 0. Rank 0 chooses the first error that it receives and reports
-/// it to all ranks. A rank that cannot end in an orderly way within `patience` after that (it hangs in a read, or its
-/// peers are gone) prints the error and ends the process. The launcher notices when a process dies, and ends the other
-/// ranks by SIGTERM. Heartbeats (watch_stalls(), heartbeats.hpp) detect a process that has stopped, but not while MPI
-/// starts and ends.
+/// it to all ranks. After that, a rank may be unable to end in an orderly way, because it hangs in a read or the other
+/// ranks are gone. After `patience`, it prints the error and ends the process. The launcher notices when a process
+/// dies, and ends the other ranks by SIGTERM. Heartbeats (watch_stalls(), heartbeats.hpp) detect a process that has
+/// stopped, but not while MPI starts and ends.
 class MpiTransport final : public Transport {
  public:
   using Speak = std::function<void(const scene::Error& error)>;
@@ -56,8 +56,8 @@ class MpiTransport final : public Transport {
   /// Starts MPI. Throws Error(system_failure) if that fails.
   explicit MpiTransport(Hooks hooks, std::chrono::milliseconds patience = std::chrono::seconds(5));
   /// Uses a duplicate of a caller's communicator, given by its Fortran handle. Collective, and so is the destructor.
-  /// This transport never ends the process: where the transport of MPI's world would end it, this one gives up the run
-  /// and abandons its messages. Throws Error(bad_input) if MPI is not running or provides too little thread support.
+  /// This transport never ends the process: instead, it gives up the run and abandons its messages. Throws
+  /// Error(bad_input) if MPI is not running or provides too little thread support.
   explicit MpiTransport(int fortran_handle, std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
 

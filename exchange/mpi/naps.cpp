@@ -30,7 +30,7 @@ std::shared_ptr<Bells> Naps::begin_look() {
 }
 
 void Naps::take(bool came, bool moving) {
-  // A rank whose cores project ignores the bells: it would poll too often.
+  // A rank whose cores project does not listen to the bells, because it would poll too often.
   Bells* const listens_to = working_ ? nullptr : looked_with_.get();
   Lengths lengths = working_ ? working : idle;
   if (listens_to != nullptr && listens_to->of_all() && !moving) lengths.longest = longest_with_bells;

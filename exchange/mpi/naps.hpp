@@ -32,7 +32,7 @@ class Naps {
   void use_bells(const std::shared_ptr<Bells>& bells, int rank);
 
  private:
-  std::mutex mutex_;  // guards the members down to bells_
+  std::mutex mutex_;  // guards is_woken_ and bells_
   std::condition_variable woken_;
   bool is_woken_ = false;
   std::shared_ptr<Bells> bells_;

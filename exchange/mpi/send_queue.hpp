@@ -36,8 +36,7 @@ class SendQueue {
 
   /// Returns once all messages that were pushed earlier are recorded in the old traces.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing);
-  /// Returns a span for a message that is being passed to MPI, if its channel is one that users ask about: fragments,
-  /// meshes and tiles.
+  /// Returns a span for a message that is being passed to MPI, if traces show its channel: fragments, mesh or tiles.
   [[nodiscard]] scene::TraceScope traced(const Outgoing& message) const;
 
  private:

@@ -101,7 +101,7 @@ class BoxLines {
 
  private:
   void add_edge(projection::PixelVertex a, projection::PixelVertex b, const Rgb& color) {
-    // Clip an edge that reaches behind the eye to the part in front of it.
+    // An edge that reaches behind the eye is clipped to its part in front of the eye.
     constexpr double least = 1e-6;
     const double near = least * std::max(std::abs(a.w), std::abs(b.w));
     if (a.w <= near && b.w <= near) return;
@@ -182,7 +182,7 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
     const auto [low, high] = corners_of(parts[process]);
     if (low == high) continue;
     for (const auto& [from, to] : bricks) {
-      // The planes of a part may cut a brick.
+      // The boundary planes of a part may cut through a brick.
       const glm::dvec3 a = glm::max(low, from), b = glm::min(high, to);
       if (glm::all(glm::lessThan(a, b))) of_bricks.add(a, b, process_colors[process % process_colors.size()]);
     }

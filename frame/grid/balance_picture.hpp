@@ -26,7 +26,7 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
                  std::span<const std::array<glm::dvec3, 2>> bricks, std::span<const volume::VoxelBox> parts);
 
 /// Draws the outlines of sort-last's parts on black. The colour of a part shows its CPU seconds relative to the most
-/// expensive part, on the scale of cost_picture() from blue on. The image is opaque.
+/// expensive part, in the colours of cost_picture() from blue to white. The image is opaque.
 scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
                            std::span<const volume::VoxelBox> parts, std::span<const double> seconds);
 

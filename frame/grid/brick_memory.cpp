@@ -23,7 +23,7 @@ std::uint64_t resident_bytes() {
 namespace {
 
 /// Bytes of the samples that a thread lays out for a tile's rays (volume/bricks/slab_block.hpp), if the volume fills
-/// the image. From farther away, a tile covers more of the volume.
+/// the image. If the eye is farther away, a tile covers more of the volume.
 std::uint64_t bytes_of_tile(const scene::GridGeometry& geometry, scene::ImageSize picture) {
   constexpr double pixels = volume::TileRays::side, leaning = 1.5, beside = 10;
   scene::GridIndex samples = geometry.samples();
@@ -37,7 +37,8 @@ std::uint64_t bytes_of_tile(const scene::GridGeometry& geometry, scene::ImageSiz
 
 std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
                               const volume::RenderSettings& settings, scene::ImageSize picture) {
-  // Bytes per cell: flags of the frame, flags with which sort-last splits the volume, flags of surfaces and a copy.
+  // Bytes per cell: one for the frame's flags, one for the flags by which sort-last splits the volume, and two for the
+  // flags of surfaces and a copy of these.
   std::uint64_t a_cell = 1;
   if (settings.parts > 1) a_cell += 1;
   if (!settings.surfaces.empty()) a_cell += 2;

@@ -28,8 +28,8 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
 
 /// Returns the part of a process's `memory` that remains for bricks of `brick` bytes each. Subtracted are `rest`, the
 /// image and its copy during output, each thread's data for its tiles, and what the heap and the cache add to each
-/// brick. The result is at least 8 MiB, or all of `memory` if that is less, because the program itself exceeds a small
-/// budget.
+/// brick. The result is at least 8 MiB, or all of `memory` if that is less: the program alone may exceed a small
+/// budget, but it still needs memory for bricks.
 std::uint64_t brick_memory(std::uint64_t memory, const OtherMemory& rest, std::uint64_t brick);
 
 }  // namespace tessera::frame

@@ -72,7 +72,8 @@ volume::CellRanges scan_together(exchange::Transport& transport, const scene::Sa
   std::copy(own.high.begin(), own.high.end(), whole.high.begin() + static_cast<std::ptrdiff_t>(before));
   for (std::uint64_t there = count; there < whole.low.size();) there += place(transport.receive(Channel::mesh), whole);
 
-  // This also ends the exchange: no rank begins the next exchange while another still waits for cells of this one.
+  // gather_values() also ends the exchange: no rank begins the next exchange while another rank still waits for cells
+  // of this one.
   const ScanTotals totals{own.lowest, own.highest, own.blanks};
   for (const ScanTotals& part : exchange::gather_values(transport, MessageKind::cell_totals, totals)) {
     whole.lowest = std::min(whole.lowest, part.lowest);

@@ -11,8 +11,8 @@ namespace tessera::frame {
 /// cells (the shares follow each other along k in the order of ranks) and sends the result to all others. Returns on
 /// every rank what one process would compute. If there are fewer layers than ranks, some ranks read nothing.
 ///
-/// Collective: the same volume on every rank, from each rank's own source. Throws the run's error, or this rank's (a
-/// source that cannot be read), which the caller passes to transport.fail().
+/// Collective: every rank passes a separate source of the same volume. Throws the run's error. If this rank's source
+/// cannot be read, throws this rank's error, which the caller passes to transport.fail().
 volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source);
 
 }  // namespace tessera::frame

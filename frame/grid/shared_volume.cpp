@@ -46,9 +46,9 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-/// Text path, text `folder`, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
-/// texts modality, unit and unit of length, u8 labels, a time step, u8 whether x and y are degrees. Empty from a rank
-/// that has not read the file.
+/// Returns the message: text path, text directory, u64 bytes (Place); fields, texts: notes; text format, u8 body axes,
+/// u8 body axes if it is CT; text modality, text unit, text unit of length, u8 whether values are labels, a time step,
+/// u8 whether x and y are in degrees. Values are empty on a rank that has not read the file.
 Bytes message_of(const io::VolumeFile& volume) {
   Place place;
   if (volume.scratch) place = {volume.scratch->path(), volume.scratch->folder(), volume.scratch->bytes()};

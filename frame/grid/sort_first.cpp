@@ -39,7 +39,8 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
           edge(r.y1, image.height, map.height)};
 }
 
-/// Resolution of the cost map. With pilot rays, one ray per packet is as good as more.
+/// Resolution of the cost map. If costs are learned from pilot rays, one map pixel per packet of rays is enough; more
+/// do not improve the split.
 double resolution_of(const RankSettings& settings) {
   return settings.balance == Balance::learned ? std::min(settings.balance_resolution, 1.0 / volume::region_grain)
                                               : settings.balance_resolution;

@@ -16,8 +16,9 @@ namespace tessera::frame {
 ///
 /// With Balance::learned, rank 0 computes the split from the tile times of the last frame if the view is close to the
 /// last view (split_by_times.hpp). Otherwise all ranks compute the split together in two stages
-/// (volume/split/image_split.hpp): each rank computes the cost of its rectangle of the last frame, or of an even tile
-/// in the first frame. The image has the same bits as that of one process, for any split.
+/// (volume/split/image_split.hpp): each rank computes the cost of the rectangle that it had in the last frame, or, in
+/// the first frame, of one rectangle of an even split. The image has the same bits as that of one process, for any
+/// split.
 ///
 /// With FrameSettings::keep_cost, rank 0 also gets the cost of the whole image; with FrameSettings::keep_uncertainty,
 /// each pixel's error bound (volume::Renderer::render). Both settings must be the same on all ranks.

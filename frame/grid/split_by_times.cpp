@@ -44,8 +44,8 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
       other_work.assign(ranks.size(), 0.0);
   other_work_.resize(ranks.size());
   ++pictures_;
-  // The first frames differ from all others: no earlier frame is gathered in parallel, and memory is new. Later frames
-  // have little weight, since gathering one may coincide with another.
+  // The first frames differ from all others: no earlier frame is gathered in parallel, and memory is new. A later frame
+  // has little weight, because its time may include the gathering of another frame.
   const double weight = std::max(0.2, 1.0 / std::max(1, pictures_ - 2));
   for (std::size_t rank = 0; rank < other_work.size(); ++rank)
     other_work_[rank] += weight * (other_work[rank] - other_work_[rank]);

@@ -28,7 +28,7 @@ struct FinishedVolumeFrame {
   std::size_t frame;  ///< index in the list of jobs
   scene::Image image;
   volume::RenderStatistics statistics;    ///< statistics of all ranks, combined as tessera::grid_counters specifies
-  std::vector<scene::PixelRect> regions;  ///< for each rank, the pixels that it finished, except steps in its edges
+  std::vector<scene::PixelRect> regions;  ///< for each rank, its region without the steps of its edges
   std::vector<GridCounters> ranks;        ///< the counters combined in `statistics`
   std::vector<double> cpu_seconds;        ///< for each rank, CPU time of rendering, summed over its threads
   std::vector<double> split_cpu_seconds;  ///< sort-first: for each rank, CPU time of its share of finding the split
@@ -80,10 +80,10 @@ class VolumeFrames {
   VolumeFrames& operator=(const VolumeFrames&) = delete;
 
   /// Renders a list of frames, with at most `in_flight` frames in progress. Returns on every rank how many frames of
-  /// the list are complete: all of them, unless a callback threw or `stop` was requested on any rank. Either ends the
-  /// list on all ranks within a tile of rays. Collective: every rank passes the same arguments, except for the
-  /// renderer, which is its own, `stop` and the callbacks. Traces number the frames `first`, `first` + 1 and so on.
-  /// Throws the run's error.
+  /// the list are complete: all of them, unless a callback threw or `stop` was requested on any rank. Both end the list
+  /// on all ranks within one tile of rays. Collective: every rank passes the same arguments, except for the renderer,
+  /// which is its own, `stop` and the callbacks. Traces number the frames `first`, `first` + 1 and so on. Throws the
+  /// run's error.
   std::size_t render(volume::Renderer& renderer, const scene::TransferFunction& function,
                      std::span<const VolumeJob> jobs, std::size_t first, const VolumeCallbacks& callbacks,
                      const std::stop_token& stop, int in_flight);

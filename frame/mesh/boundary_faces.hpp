@@ -25,8 +25,8 @@ struct BoundaryFaces {
 BoundaryFaces boundary_faces(const scene::TetMeshView& mesh);
 
 /// Finds the boundary faces of a mesh in parts, one part per rank, and returns the same triangles on all ranks.
-/// Collective: every rank sends the faces that no other tet of its part shares to all ranks, 104 bytes per face. Ranks
-/// that share one part pass the same `owner`, the rank that sends the part's faces.
+/// Collective: every rank sends to all ranks those faces of its part that belong to only one tet of the part, 104 bytes
+/// per face. Ranks that share one part pass the same `owner`, the rank that sends the part's faces.
 BoundaryFaces boundary_faces(const scene::TetMeshView& part, exchange::Transport& transport, int owner);
 
 /// Returns all triangle surfaces of a frame and marks those that belong to this process (SurfaceFaces::here).

@@ -76,7 +76,8 @@ bool DoubleSourceOf<Segments>::fill(const compositor::TileSink<Encoding>& sink) 
 template <class Segments>
 double DoubleSourceOf<Segments>::final_depth() const {
   const double depth = context_.depth_origin + order_->nearest_from(next_);
-  // The scanline rasterizer's depths are floats, rounded the same way and not before their cell's nearest vertex.
+  // The scanline rasterizer's depths are floats. They are rounded in the same way, and are not in front of the nearest
+  // vertex of their cell.
   return context_.rasterizer == Rasterizer::scanline ? static_cast<float>(depth) : depth;
 }
 
@@ -116,7 +117,7 @@ std::size_t DoubleSourceOf<Segments>::rasterize_at_steps(std::span<const project
   return taken;
 }
 
-/// Rasterizes cell by cell, and cuts each at the faces before the next one.
+/// Rasterizes one cell after the other, and cuts the segments of each cell at the triangle surfaces.
 template <class Segments>
 std::size_t DoubleSourceOf<Segments>::rasterize_at_faces(std::span<const projection::TileEntry> entries) {
   Segments& segments = lists_.segments;

@@ -68,7 +68,7 @@ double usual_optical_depth(const scene::TransferFunction& function, double lengt
   const double span = knots.back().value - knots.front().value;
   return length * (span > 0 ? sum / span : knots.front().extinction);
 }
-constexpr double opaque_depth = 40;  // a ray that ends at a transmittance of 1e-3 passes a sixth of this depth
+constexpr double opaque_depth = 40;  // optical depth; a ray that ends at a transmittance of 1e-3 reaches a sixth of it
 
 /// One thread's part of a frame. It renders tiles one after the other.
 class TileWorker {

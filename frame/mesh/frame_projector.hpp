@@ -36,7 +36,7 @@ struct FrameTask {
   std::int32_t number = -1;  ///< frame number for the trace
   float longest_edge = 0;    ///< scanline: longest edge of the whole data set, world units; 0: that of this mesh
   double longest_ray = 0;    ///< upper bound of a ray's length in the whole mesh; 0: diagonal()
-  scene::FrameWatch* watch = nullptr;  ///< project() throws scene::FrameStopped once it requests a stop
+  scene::FrameWatch* watch = nullptr;  ///< project() throws scene::FrameStopped once the watch requests a stop
 };
 
 /// The sinks that receive the segments of a frame. A sink belongs to one thread, which passes tiles to the sink one
@@ -57,8 +57,9 @@ struct TileSinks {
   std::function<void(const std::vector<bool>& has_any)> announce{};
 };
 
-/// The processes that project a frame together. They have one mesh in shared memory and do the same task, without faces
-/// and image. Each process does its share of the passes and renders some of the tiles.
+/// The processes that project a frame together. They have one mesh in shared memory and the same FrameTask, without
+/// triangle surfaces. Their sinks do not write to an image. Each process does its share of the passes and renders some
+/// of the tiles.
 struct TeamTask {
   scene::Team* team = nullptr;  ///< null: a single process
   /// Returns the member that should own tile `tile` if the load permits; -1: no preference. Empty: no tile has a

@@ -23,8 +23,9 @@ constexpr double most_optical_depth = 2000;
 struct Brightness {
   double of_rays, of_surfaces, per_step;
 };
-/// Returns the largest change of a pixel that the rounding of scalars may cause: its share of the budget, or what the
-/// other errors leave. If it is not above zero, float lanes are not accurate enough. `peel`: of layers; may be null.
+/// Returns the largest change of a pixel that the rounding of scalars may cause. It is this rounding's share of the
+/// error budget, or what the other errors leave of the budget if that is less. If it is not above zero, float lanes are
+/// not accurate enough. `peel`: the settings of layers; null: no layers.
 double most_error_of(const Settings& settings, const Brightness& light, const Peel* peel) {
   const scene::Integrator& integrator = settings.integrator;
   if (peel != nullptr) {
@@ -47,15 +48,16 @@ double most_error_of(const Settings& settings, const Brightness& light, const Pe
     of_surfaces += projection::LatticeFaces::reach * light.per_step + projection::DepthLimits::most_error;
   return std::min(share, promised - (all - share) - of_surfaces * std::max(1.0, light.of_surfaces));
 }
-// Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
-// most D int T dt over the ray's path through the piece, times the largest contribution behind the piece. Transmittance
-// T falls at least like exp(-sigma t), where sigma is the piece's smallest extinction. Let x_i be the integral of piece
-// i. Then sum x_i <= L and sum sigma_i x_i <= 1. If D_i <= E (1 / L + sigma_i) / 2 for all pieces, their total error is
-// at most E.
+// An error of at most D in the extinctions of one piece of the function changes light and opacity by at most D int T dt
+// times the largest contribution behind the piece. The integral is over the part of the ray whose scalars are in the
+// piece. Transmittance T falls at least like exp(-sigma t), where sigma is the piece's smallest extinction. Let x_i be
+// the integral of piece i. Then sum x_i <= L and sum sigma_i x_i <= 1. If D_i <= E (1 / L + sigma_i) / 2 for all
+// pieces, their total error is at most E.
 double seen_length(double length, double least_extinction) {
   return std::min(length, 2 / (1 / length + least_extinction));
 }
-// Deeper mesh is dark: only rays at the foot of a very steep ramp could show more.
+// Upper bound of a change in optical depth: what is behind such an optical depth is invisible. Only rays at the foot of
+// a very steep ramp could show more.
 constexpr double most_change_of_depth = 64;
 constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
 
@@ -89,7 +91,7 @@ std::array<double, 2> with_values(std::array<double, 2> range, const Surfaces& s
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
-/// `peel`: the lattice of layers; may be null.
+/// `peel`: the settings of layers; null: no layers.
 std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, const scene::Box& box,
                                         const std::array<double, 2>& scalar_range,
                                         const scene::TransferFunction& transfer_function, const Settings& settings,

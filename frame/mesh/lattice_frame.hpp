@@ -21,8 +21,8 @@ namespace tessera::frame {
 ///   - the mesh's depth times the largest extinction is above 2000: 16 steps of the lattice, 1e-8 of the depth, could
 ///     be visible. With perspective, the longest ray of the image replaces the depth;
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could exceed its share of
-///     the error (scene/error_budget.hpp), and too many ranges would have to be magnified, or there are triangle
-///     surfaces or devices, which do not know magnified ranges;
+///     the error (scene/error_budget.hpp), and magnified ranges (frame/mesh/magnified_ranges.hpp) cannot help: either
+///     too many would be needed, or there are triangle surfaces or devices, which do not support them;
 ///   - there are both triangle surfaces and iso-surfaces: where they nearly touch, the lattice cannot resolve their
 ///     order;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;

@@ -12,12 +12,12 @@ namespace {
 constexpr std::size_t usual_capacity = 32;         // segments per pixel: half a MiB of windows
 constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: fewer segments behind that point
 constexpr std::size_t cells_at_once = 16;
-// When one list is full, lists shorter than this fraction of the first capacity stay in the store: most of the segments
-// that are sorted should be final.
+// When one list is full, lists shorter than this fraction of the first capacity stay in the store, so that most of the
+// segments that are sorted are final.
 constexpr double fullness = 0.75;
-// The nearest depths of cells that are oblique to the rays are far in front of their segments. If more than this
-// fraction of a list is not final, sorting the list would be repeated; the list gets more capacity instead, as long as
-// it stays in the cache.
+// If more than this fraction of a list is not final, the lists get more capacity, as long as they fit in the cache.
+// Otherwise the same segments would be sorted again and again. This happens with cells that are oblique to the rays:
+// their nearest depth is far in front of most of their segments.
 constexpr double rest_worth_growing = 0.25;
 constexpr std::size_t roomy = 256;
 // Computed depths may be this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
@@ -63,7 +63,8 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
   }
 }
 
-/// Returns the depth before which neither the marks that are still in the stream nor any cell have segments.
+/// Returns a depth before which there are neither segments of cells nor crossings of surfaces that are still in the
+/// stream.
 std::int64_t LatticeSource::first_of_marks() const {
   std::int64_t first = std::int64_t{1} << 32;
   if (!order_->entries.empty()) first = first_of_cells();
@@ -73,7 +74,7 @@ std::int64_t LatticeSource::first_of_marks() const {
 
 std::int64_t LatticeSource::final_depth() const { return cells_ == 0 ? first_of_marks() : first_of_cells(); }
 
-/// Returns the depth before which the stream's cells have no segments.
+/// Returns a depth before which neither the cells in the stream nor later cells have segments.
 std::int64_t LatticeSource::first_of_cells() const {
   const double near_depth = context_.depth_origin + order_->nearest_from(from_);
   const double steps = (near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;

@@ -24,7 +24,7 @@ std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, dou
                                                std::span<const FunctionPiece> pieces, double most_error) {
   // Just below a step or the end of a range, the error is a whole last place, as in resolves().
   const double error = 2 * scalars.reach * float_error;
-  // Two numbers at this distance are two floats, which are at most `error` apart.
+  // Numbers at this distance are rounded to different floats: neighbouring floats are at most `error` apart.
   const double separate = 1.25 * error;
   std::vector<Range> ranges;
   for (const FunctionPiece& piece : pieces) {
@@ -36,7 +36,7 @@ std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, dou
     if (!ranges.empty()) {
       Range& last = ranges.back();
       const double limit = std::min(last.most_width, most_width);
-      // Cells between two near ranges would mostly reach both.
+      // Most cells with a scalar between two near ranges would reach both ranges.
       const bool near = begin - last.high <= last.high - last.low;
       if (near && end - last.low <= limit) {
         last = {last.low, std::max(last.high, end), limit};
@@ -46,7 +46,8 @@ std::optional<std::vector<Range>> steep_ranges(const ScalarLattice& scalars, dou
     if (end - begin > most_width) return std::nullopt;
     ranges.push_back({begin, end, most_width});
   }
-  // The two ends of touching ranges are also among the scalars that are not moved.
+  // The lower and upper end of touching ranges must be different floats, because these ends are also among the scalars
+  // that are not moved.
   double begin = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (i == 0 || ranges[i].low != ranges[i - 1].high) begin = ranges[i].low;

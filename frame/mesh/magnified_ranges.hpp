@@ -9,8 +9,8 @@
 #include "scene/lattice.hpp"
 #include "scene/transfer_function.hpp"
 
-/// Transfer functions that are too steep for the lattice in small ranges of scalars, such as those over a logarithm.
-/// These ranges are magnified (scene::MagnifiedRange).
+/// Transfer functions that are too steep for the lattice in small ranges of scalars, for example functions of the
+/// logarithm of a value. These ranges are magnified (scene::MagnifiedRange).
 namespace tessera::frame {
 
 /// A piece of the function between two knots.

@@ -16,7 +16,7 @@ namespace tessera::frame {
 /// Throws Error(system_failure) if this number of images does not fit in half of the memory budget.
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes);
 
-/// The name of the requested result in messages: `peel` or "deep picture".
+/// The name of the requested result in messages.
 inline const char* deep_word(bool peeled) { return peeled ? "`peel`" : "deep image"; }
 
 /// Returns `count` images; image n contains sample n of each pixel.

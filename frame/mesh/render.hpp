@@ -30,9 +30,9 @@ struct FrameStatistics : scene::FrameCounters {
 };
 
 /// Renders one tetrahedral mesh many times in one process, with settings that are valid for meshes (tessera::validate);
-/// iso-surfaces need point data. Only the rasterizer, integrator, emission, surfaces, shading and Settings::use change
-/// any bit of the image. The constructor does the preparation that does not depend on view or transfer function; the
-/// mesh must outlive the renderer and not change.
+/// iso-surfaces need point data. The bits of the image depend on these settings only: rasterizer, integrator, emission,
+/// surfaces, shading and Settings::use. The constructor does the preparation that does not depend on view or transfer
+/// function; the mesh must outlive the renderer and not change.
 class Renderer {
  public:
   Renderer(const scene::TetMeshView& mesh, const Settings& settings);

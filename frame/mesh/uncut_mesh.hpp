@@ -13,9 +13,9 @@ namespace tessera::frame {
 /// restricted. So the reference does not depend on how cells are cut.
 struct UncutMesh {
   scene::TetMeshView mesh;
-  /// Half-spaces of the data set's state; empty: `mesh` is rendered without clipping.
+  /// The half-spaces by which the data set was clipped; empty: it was not clipped.
   std::span<const scene::HalfSpace> kept;
-  scene::TetMeshView rendered;        ///< the mesh that is rendered; equals `mesh` if this rank has only a part
+  scene::TetMeshView rendered;        ///< the mesh that is rendered; `mesh` if this rank has only a part
   std::shared_ptr<const void> owner;  ///< keeps `mesh` in memory; null: the data set's state does
 };
 

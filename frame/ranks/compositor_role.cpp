@@ -111,7 +111,8 @@ class CompositorLoop {
   }
 
  private:
-  /// Returns the next message, or sometimes an empty message, because the last frame may finish without one.
+  /// Returns the next message, or an empty message if none arrives within 20 ms: the last frame may finish without a
+  /// further message.
   exchange::Message next() {
     auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(20));
     if (message) return std::move(*message);
@@ -321,7 +322,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
   };
   const DistributedSettings& settings = run.settings;
   const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
-  // Declared before the assembly, which waits for their work.
+  // Declared before the assembly, whose destructor waits for the tasks of the workers.
   std::optional<WorkerThreads> workers;
   compositor::AssemblySettings how;
   how.grid_of = [&](std::uint32_t frame) {

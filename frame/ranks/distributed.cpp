@@ -73,10 +73,11 @@ void LoadedMesh::share_mesh() {
 
 const FrameJob& job_of(const DistributedRun& run, std::uint32_t number) {
   if (number - run.first >= run.jobs.size())
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("exchange: frame {} is not one of {} from {} on; all ranks must be given the same "
-                                   "arguments",
-                                   number, run.jobs.size(), run.first));
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        fmt::format(
+            "exchange: frame {} is not one of the {} frames from {} on; all ranks must be given the same arguments",
+            number, run.jobs.size(), run.first));
   return run.jobs[number - run.first];
 }
 

@@ -110,15 +110,15 @@ cells::MeshFile share_description(Transport& transport, std::span<const int> pro
   return description_in(reader);
 }
 
-/// Reduces every rank's part to the selection. Returns the facts and samples of the whole before that; null if
-/// everything is selected. Collective.
+/// Reduces every rank's part to the selection. Returns the facts and samples of the whole mesh before the selection;
+/// null if everything is selected. Collective.
 std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const Selection& selection,
                                               const std::string& source, scene::TetMesh& part, MeshCounts& counts) {
   if (selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
   all->facts = agree_facts(transport, part);
-  // Sampling depends on the order of corners, so use the renderers' order: the samples are then those of the whole
-  // mesh.
+  // Samples depend on the order of each tet's corners. Corners are therefore brought into the order that renderers use,
+  // so that the samples are those that one process would take from the whole mesh.
   std::vector<scene::Tet> as_read = part.tets;
   std::vector<double> values;
   if (const auto fill = find_fill_value(transport, part, all->facts); fill && fill->is_outside(selection.threshold)) {
@@ -177,7 +177,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   io::MeshFilePart own;
   if (reads) own = reading->finish(excess);
   reading.reset();
-  if (reads)  // the channel is free: all gathered the summaries before
+  if (reads)  // the channel `mesh` is free: all ranks have reached the gather() above
     own.summary.counts.cells_duplicate =
         count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors);
 
@@ -213,7 +213,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   description.axis_scale = options.axis_scale.value_or(glm::dvec3(1));
   result.description = share_description(transport, projectors, description);
   result.part.mesh = std::move(own.mesh);
-  result.part.mesh.original_cell = {};  // it counts this part's cells
+  result.part.mesh.original_cell = {};  // its numbers count only this part's cells
   result.part.global_tet.resize(result.part.mesh.tets.size());
   std::iota(result.part.global_tet.begin(), result.part.global_tet.end(), first_tet);
   return result;
@@ -243,7 +243,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     throw scene::Error(scene::ErrorCode::system_failure,
                        first.name + ": memory ran out; use more processes or larger machines");
   }
-  // A rank without tets gets these from the others.
+  // A rank without tets gets these two values from the other ranks.
   result.part.mesh.field_name = result.description.mesh.field_name;
   result.part.mesh.association = result.description.mesh.association;
   return result;

@@ -15,7 +15,7 @@
 
 namespace tessera::frame {
 
-/// One rank's part of a mesh that several read together.
+/// One rank's part of a mesh that several ranks read together.
 struct DistributedMesh {
   MeshPart part;           ///< this rank's tets; empty on ranks that do not project
   scene::MeshFacts facts;  ///< facts of the whole mesh
@@ -29,10 +29,10 @@ struct DistributedMesh {
 /// Reads a mesh and gives every projector its part. Collective.
 ///
 /// Several files are the pieces of one mesh; `first` is the first of them, identified. A single file in a format that
-/// can be read in parts (io::readable_in_parts) is read by all projectors at once, each its share. Anything else is
-/// read by the first projector, which distributes it: one read instead of one per rank. The indices of the tets, and so
-/// every image, do not depend on how the files were read. Records spans `read` and `partition`. Throws this rank's
-/// error, which the caller passes to transport.fail(), or the run's error.
+/// can be read in parts (io::readable_in_parts) is read by all projectors at once; each reads its share. Anything else
+/// is read only by the first projector, which distributes the mesh. The indices of the tets, and so every image, do not
+/// depend on how the files were read. Records spans `read` and `partition`. Throws this rank's error, which the caller
+/// passes to transport.fail(), or the run's error.
 DistributedMesh read_distributed(exchange::Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::InputFile& first, const ReadOptions& options,
                                  const projection::Partition& partition, std::span<const int> projectors);

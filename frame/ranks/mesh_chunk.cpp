@@ -35,7 +35,7 @@ ChunkSender::ChunkSender(const MeshPart& local, std::vector<std::uint32_t> part_
 }
 
 void ChunkSender::begin_part() {
-  if (turn_ >= 0)  // resets only what was used, as many small parts would each cost the whole mesh
+  if (turn_ >= 0)  // resets only the numbers that were used: a reset of all for each of many parts would take too long
     for (std::size_t k = begin_[static_cast<std::size_t>((first_part_ + turn_) % parts_)]; k < end_; ++k)
       for (const std::uint32_t v : local_.mesh.tets[order_[k]]) number_[v] = unsent;
   ++turn_;

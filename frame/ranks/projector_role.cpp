@@ -75,7 +75,7 @@ class FrameSinks {
         std::max(integrals::opacity_weight(max_color, mesh.diagonal, settings_.render.emission), surfaces_.max_color());
     if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
     if (light_) scene_.light = &*light_, scene_.normals = &normals_;
-    // Runs of several ranks end at the triangles of other ranks only in double precision (FaceMarks).
+    // In double precision, runs also end at the triangles of other ranks (FaceMarks); on the lattice, they do not.
     const bool runs_end_at_faces = settings_.render.surfaces.has_faces() && settings_.exchange == Exchange::runs;
     if (!runs_end_at_faces || makes_pixels_)
       lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render, settings_.frame);

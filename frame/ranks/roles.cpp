@@ -38,8 +38,8 @@ Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> 
   if (n + p == ranks) return {consecutive(0, n), consecutive(n, p)};
   if (std::max(n, p) == ranks) return {consecutive(0, n), consecutive(0, p)};
   throw scene::bad_input(
-      fmt::format("`projectors` {} `compositors` {}: on {} ranks they must add up to {}, or the larger must be {} if "
-                  "ranks do both; start mpirun -n {}",
+      fmt::format("`projectors` {} `compositors` {}: on {} ranks they must add up to {}, or, if ranks have both roles, "
+                  "the larger must be {}; start mpirun -n {}",
                   n, p, ranks, ranks, ranks, n + p));
 }
 

@@ -9,7 +9,7 @@ WorkerThreads::WorkerThreads(int count, std::function<void(const std::exception&
     : on_error_(std::move(on_error)) {
   try {
     for (int i = 0; i < count; ++i) threads_.push_back(scene::start_thread([this] { work(); }));
-  } catch (...) {  // the destructor will not run for threads that have started
+  } catch (...) {  // the destructor does not run after an exception here, so threads that have started must end now
     end();
     throw;
   }

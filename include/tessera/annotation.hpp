@@ -17,8 +17,8 @@
 
 /// Annotations drawn over a finished image: colour bar, axes, outline, scale bar, text.
 ///
-/// Colours   linear light, premultiplied, as in Image. For images of display colours, they are display values
-///           (AnnotationStyle::display_colors). The depth of the image does not change.
+/// Colours   Colours are linear light, premultiplied, as in Image. For an image of display colours, they are display
+///           values (AnnotationStyle::display_colors). The image's depth does not change.
 /// Lengths   Lengths on the image are in pixels, measured from its top left corner, with y downwards. Lengths of the
 ///           data are in world units.
 /// Text      UTF-8, one font; invalid UTF-8 is shown as U+FFFD. The middle of a text that is too long is left out.

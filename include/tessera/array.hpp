@@ -39,19 +39,19 @@ class ArrayView {
 
   template <std::ranges::contiguous_range Range>
   requires std::ranges::sized_range<Range> && std::is_arithmetic_v<std::ranges::range_value_t<Range>> ArrayView(
-      const Range& numbers)  // NOLINT(google-explicit-constructor): a view of what is there
+      const Range& numbers)  // NOLINT(google-explicit-constructor): conversion is intended
       : data_(std::ranges::data(numbers)),
         size_(std::ranges::size(numbers)),
         type_(number_type_of<std::ranges::range_value_t<Range>>()) {}
 
   template <std::ranges::contiguous_range Range>
   requires std::ranges::sized_range<Range> && std::same_as<std::ranges::range_value_t<Range>, glm::dvec3> ArrayView(
-      const Range& vectors)  // NOLINT(google-explicit-constructor): a view of what is there
+      const Range& vectors)  // NOLINT(google-explicit-constructor): conversion is intended
       : data_(std::ranges::data(vectors)), size_(3 * std::ranges::size(vectors)), type_(NumberType::float64) {}
 
   template <std::ranges::contiguous_range Range>
   requires std::ranges::sized_range<Range> && std::same_as<std::ranges::range_value_t<Range>, CellType> ArrayView(
-      const Range& types)  // NOLINT(google-explicit-constructor): a view of what is there
+      const Range& types)  // NOLINT(google-explicit-constructor): conversion is intended
       : data_(std::ranges::data(types)), size_(std::ranges::size(types)), type_(NumberType::uint8) {}
 
   ArrayView(const void* data, std::size_t size, NumberType type) : data_(data), size_(size), type_(type) {}

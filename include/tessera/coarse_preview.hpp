@@ -24,8 +24,8 @@ struct PreviewSettings {
 /// Mesh   a regular grid over the mesh's box. A sample inside a tet has the field's value at its place; if several tets
 ///        contain the sample, the first one determines the value. Cell data are converted to point data. Samples within
 ///        half a sample spacing of a tet also have a value; all others are blank. The boundary is displaced by up to
-///        one spacing in either direction. Of parts that are thinner than one spacing only some places are drawn; these
-///        are thick enough for the parts to look equally dense from a distance.
+///        one spacing in either direction. Parts that are thinner than one spacing are drawn only in some places. These
+///        places are thick enough for the parts to look equally dense from a distance.
 /// Grid   a grid over the same box with fewer samples along each axis. Each sample is the mean of the nearest samples
 ///        of the data that are not blank. A grid that has at most `samples` samples is returned unchanged.
 ///

@@ -13,8 +13,8 @@ inline namespace v0_1 {
 /// processes of an MPI communicator (tessera/mpi.hpp makes a Communicator from an MPI_Comm).
 ///
 /// Sessions and data sets duplicate the communicator they receive, so that their messages are separate from those of
-/// the caller and of other sessions. They neither start nor end MPI. They call MPI on a thread of their own, possibly
-/// while the caller's threads call MPI too. The caller must therefore start MPI with MPI_THREAD_MULTIPLE; a lower level
+/// the caller and of other sessions. They neither start nor end MPI. They call MPI on a separate thread, possibly while
+/// the caller's threads call MPI too. The caller must therefore start MPI with MPI_THREAD_MULTIPLE; a lower level
 /// causes an Error. A single process needs no MPI at all.
 class TESSERA_EXPORT Communicator {
  public:

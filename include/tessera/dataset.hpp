@@ -124,8 +124,8 @@ class TESSERA_EXPORT Dataset {
   static Dataset open(const InputFile& file, const ReadOptions& options, const Communicator& communicator,
                       const RankSettings& ranks = {});
 
-  /// Makes a data set from the caller's arrays. Throws Error(bad_input), with the array and the place, if an array is
-  /// wrong, and Error(bad_input) if no cell or no finite sample remains.
+  /// Makes a data set from the caller's arrays. Throws Error(bad_input), which names the array and the position, if an
+  /// array is invalid, and Error(bad_input) if no cell or no finite sample remains.
   static Dataset of(const MeshArrays& arrays);
   static Dataset of(const GridArrays& arrays);
   /// Makes a grid from samples that are read when they are needed. All of them are read once at the beginning to
@@ -210,7 +210,7 @@ class TESSERA_EXPORT Dataset {
   /// from a file, or is given as JSON text (is_json_text(); messages call the text `transfer_function`). If the
   /// argument is empty, the default function is chosen by how the field's values are distributed over the volume
   /// (docs/REFERENCE.md, "The first picture"); it is the same for any number of ranks and threads. The first call
-  /// samples the field at some ten thousand places. The `warnings` of the result report what the function does not
+  /// samples the field at about ten thousand places. The `warnings` of the result report what the function does not
   /// show. Throws Error(bad_input) with the file and line.
   [[nodiscard]] LoadedTransferFunction transfer_function(const std::string& file_or_preset = "",
                                                          const TransferFunctionOptions& options = {}) const;

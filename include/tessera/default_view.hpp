@@ -10,13 +10,13 @@
 
 /// Views not given as a camera: the default view and the named views.
 ///
-/// Up      z, unless the caller specifies another direction. Medical files state the anatomical axes; z points to the
-///         head in all of them.
+/// Up      z, unless the caller specifies another direction. In medical files, which state the anatomical axes, z
+///         always points to the head.
 /// Default The eye is a little to the right and above: rotated by 30 degrees about the vertical and 25 degrees above
 /// the
 ///         horizon. Flat data, whose height is less than a fifth of both sides, are seen from 60 degrees above the
 ///         horizon. The side towards the eye is the file's -y, or +x if the data are more than 1.5 times as deep as
-///         wide; for a patient it is always the face.
+///         wide; for a patient, this side is always the face.
 /// Fit     The whole box is in the image, with a margin of 5 %.
 namespace tessera {
 inline namespace v0_1 {
@@ -31,7 +31,7 @@ enum class BodyAxes {
 /// Named view directions. For a patient (BodyAxes), `front`, `back`, `left` and `right` show the side of the body with
 /// this name; left is the patient's left. For other data, `front` looks along +y, `right` along -x and so on. For all
 /// data, `top` looks along -z and `iso` along (-1, 1, -1); the remaining views look along the axis in their names. The
-/// axis z points up in the image; in views along z the axis y does.
+/// z axis points up in the image; in views along z, the y axis points up.
 enum class StandardView {
   automatic,
   front,
@@ -61,7 +61,8 @@ struct ViewRequest {
   /// horizon.
   double azimuth = 0, elevation = 0;
   double zoom = 1;   ///< magnification about the centre of the image, > 0
-  bool fit = false;  ///< for a caller's camera: keeps its directions, but moves it so that it frames the box
+  bool fit = false;  ///< for a caller's camera: the directions are kept, but the camera is moved so that the whole box
+                     ///< is in the image
 
   bool operator==(const ViewRequest&) const = default;
 };
@@ -73,9 +74,9 @@ TESSERA_EXPORT Camera view_of_box(const Box& box, ImageSize size, const ViewRequ
                                   ProjectionKind projection = ProjectionKind::orthographic,
                                   BodyAxes axes = BodyAxes::none, bool turning = false);
 
-/// Returns a caller's camera with azimuth, elevation, zoom and `fit` applied; without any of them, the camera is
-/// returned bit for bit. Throws the same errors as view_of_box(), and Error(bad_input) if the request has a named view
-/// or an `up`, because the camera already specifies these.
+/// Returns a caller's camera with azimuth, elevation, zoom and `fit` applied. If none of these is requested, the camera
+/// is returned bit for bit. Throws the same errors as view_of_box(), and Error(bad_input) if the request has a named
+/// view or an `up`, because the camera already specifies these.
 TESSERA_EXPORT Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const ViewRequest& request);
 
 /// Returns a view of the whole box, with a margin of 5 %. The eye is in direction `to_eye` from the centre of the box,

@@ -29,8 +29,8 @@ enum class ErrorCode : int {
 ///
 /// Names of settings are in backquotes and spelled as in C++, in the remedy too: "raise `memory`". The program prints
 /// the option instead of the name, here --memory. Other text in backquotes must not be the name of a setting. A line
-/// may name several settings. If it begins with a name, the error is about that setting, and setting() returns the
-/// name.
+/// may name several settings. If the line begins with a name, the error is about that setting, and setting() returns
+/// the name.
 ///
 /// what() returns the whole error as one line, `SUBJECT: PROBLEM; REMEDY`, without the separator of an empty part. The
 /// functions that return parts return views into what(), which are valid as long as the error exists.
@@ -46,7 +46,7 @@ class TESSERA_EXPORT Error : public std::runtime_error {
 
   Error(const Error&) = default;
   Error& operator=(const Error&) = default;
-  ~Error() override;  // defined in one source file, so that all binaries that link to it share one type identity
+  ~Error() override;  // defined in one source file, so that all binaries share one type identity
 
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
   [[nodiscard]] std::string_view subject() const noexcept;

@@ -21,14 +21,14 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Options of histogram(). Histograms and quantiles are computed from some ten thousand places, spread evenly over the
+/// Options of histogram(). Histograms and quantiles are computed from about ten thousand places, spread evenly over the
 /// volume; the default transfer function is chosen from the same places. This is fast and gives the same result for any
-/// number of threads and ranks. The functions may be called on one rank alone. The relative error of a share of 1 % of
-/// the volume is about a tenth. Blank samples and parts left out by a selection are not counted.
+/// number of threads and ranks. The functions may be called on one rank alone. A share of 1 % of the volume has a
+/// relative error of about 10 %. Blank samples and parts left out by a selection are not counted.
 struct HistogramOptions {
   std::size_t bins = 256;                        ///< 1 to 65536, of equal width
-  std::optional<std::array<double, 2>> range{};  ///< low < high; default: the field's range, or one of width 1 if the
-                                                 ///< field is constant
+  std::optional<std::array<double, 2>> range{};  ///< low < high; default: the field's range, or a range of width 1 if
+                                                 ///< the field is constant
   /// If true, the bins have equal widths in the logarithm of the value. A range that begins at or below 0 is changed to
   /// begin at the smallest positive value found.
   bool logarithmic = false;
@@ -59,7 +59,7 @@ struct RayPoint {
   double depth = std::numeric_limits<double>::infinity();   ///< planar depth from the eye along the view direction,
                                                             ///< world units
   glm::dvec3 position{0};                                   ///< world
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< of the field; NaN between cells
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< the field's value; NaN between cells
 };
 
 /// The values along the ray through the centre of a pixel, front to back.
@@ -75,13 +75,13 @@ struct RayProbe {
   /// Equally spaced depths from where the ray first enters the data to where it last leaves them, both ends included.
   /// Empty if the ray misses the data.
   std::vector<double> depth{};
-  std::vector<double> value{};    ///< of the field at those depths; NaN outside cells and in blank cells
-  std::vector<double> opacity{};  ///< accumulated from the eye to those depths
+  std::vector<double> value{};    ///< the field's values at these depths; NaN outside cells and in blank cells
+  std::vector<double> opacity{};  ///< the opacity accumulated from the eye to each of these depths
 };
 
-/// Returns the values along the ray of a pixel; (0, 0) is the top left. Of the settings only emission, surfaces and
-/// shading are used. `samples` is the number of depths in the result, 2 to 65536. For a mesh of 12 million tets the
-/// function takes about a tenth of a second.
+/// Returns the values along the ray of a pixel; (0, 0) is the top left. Only the emission, the surfaces and the shading
+/// of the settings are used. `samples` is the number of depths in the result, 2 to 65536. For a mesh of 12 million tets
+/// the function takes about a tenth of a second.
 ///
 /// For a mesh in parts, one per rank, the function is collective: all ranks call it with the data set's communicator
 /// and get the same result. Throws the same errors as Reference, and Error(bad_input) for a pixel outside the image.

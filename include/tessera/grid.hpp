@@ -56,10 +56,10 @@ struct SampleBox {
 ///         lattice points (i, j, k) and (i + 1, j + 1, k + 1).
 /// Units   Lengths are in the world units of the file. All indices are int64, so 2048^3 samples and more can be
 ///         addressed.
-/// Holds   validate() checks: at least two lattice points along each axis; spacing > 0; if an axis has coordinates, one
-///         per lattice point, strictly increasing; the columns of `direction` have unit length and are linearly
-///         independent; all numbers are finite. The columns may have either handedness and need not be orthogonal
-///         (NIfTI may shear).
+/// Holds   validate() checks: at least two lattice points along each axis; spacing > 0; if an axis has coordinates,
+///         there is one per lattice point, and they increase strictly; the columns of `direction` have unit length and
+///         are linearly independent; all numbers are finite. The columns may have either handedness and need not be
+///         orthogonal (NIfTI may shear).
 struct GridGeometry {
   GridIndex points{0, 0, 0};  ///< lattice points along each axis
   Association association = Association::point;

@@ -17,8 +17,8 @@ inline namespace v0_1 {
 
 /// Writes an image in the format that the file's extension denotes.
 ///   .exr  OpenEXR scan lines, ZIP: R G B A linear and premultiplied, Z planar depth (+inf where nothing is visible).
-///   .png  sRGB, 8 or 16 bits. Without a background: RGBA with straight alpha, as PNG requires. Light that a pixel
-///         emits beyond its alpha (independent emission) is clamped; it is only visible with a background.
+///   .png  sRGB, 8 or 16 bits. Without a background: RGBA with straight alpha, as PNG requires. Premultiplied
+///         colours above alpha (from independent emission) are clamped; they are only visible with a background.
 ///   .tif  as .png, compressed by deflate (.tiff too); BigTIFF if larger than 4 GB.
 ///   .jpg  sRGB, 8 bits, without chroma subsampling (.jpeg too). No alpha: without a background the image is on black.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.

@@ -44,8 +44,8 @@ class TESSERA_EXPORT InputFile {
 /// exist.
 TESSERA_EXPORT void require_input(const std::filesystem::path& input);
 
-/// These functions throw Error(bad_input) if the file does not exist, or if its name and its first bytes show that it
-/// is not a grid or, respectively, not a mesh. They do not read the rest of the file.
+/// Both functions throw Error(bad_input) if the file does not exist. They also throw it if the file's name and first
+/// bytes show that it is not a grid (require_grid) or not a mesh (require_mesh). The rest of the file is not read.
 TESSERA_EXPORT void require_grid(const std::filesystem::path& file);
 TESSERA_EXPORT void require_mesh(const std::filesystem::path& file);
 

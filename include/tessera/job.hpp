@@ -20,8 +20,8 @@ inline namespace v0_1 {
 struct StallSettings {
   std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< longest time without communication, > 0
   bool ends_run = false;  ///< true: an error that names the rank ends the run; false: the job waits
-  /// Called, on a thread of the job, to report that the job waits for a rank, and when that rank communicates again.
-  /// May be empty.
+  /// Called on a thread of the job to report that the job waits for a rank, and later to report that this rank
+  /// communicates again. May be empty.
   std::function<void(const std::string& words)> report;
 };
 
@@ -91,8 +91,8 @@ class TESSERA_EXPORT Job {
   /// the run's error, if any, which is the same on all ranks and has been reported by one of them.
   std::optional<Error> finish();
 
-  /// Writes a line to stderr unless this function has already written one: on any rank of this machine if
-  /// answer_termination() has been called, otherwise in this process. May be called from any thread.
+  /// Writes a line to stderr unless this function has already written a line. If answer_termination() has been called,
+  /// the lines of all ranks of this machine count, otherwise only those of this process. May be called from any thread.
   static void print_once(const std::string& line);
 
  private:

@@ -13,7 +13,7 @@ inline namespace v0_1 {
 using CheckProgressFunction = std::function<void(double)>;
 
 /// Defects of a mesh. None of them prevents rendering. Only overlapping cells make the image wrong, because every cell
-/// contributes to it.
+/// contributes to the image.
 ///
 /// By position   Points with the same position are treated as one point, so that seams between pieces are not reported
 ///               as cracks.
@@ -23,8 +23,8 @@ using CheckProgressFunction = std::function<void(double)>;
 struct MeshCheck {
   static constexpr std::size_t most_overlaps = 1'000'000, most_places = 5;
 
-  /// Location of a defect. The first defects are listed or, for slivers, the worst. No cell or pair of cells is listed
-  /// twice.
+  /// Location of a defect. If there are many, the first defects are listed; for slivers, the worst are listed. No cell
+  /// or pair of cells is listed twice.
   struct Place {
     std::uint64_t cell = 0;   ///< number of the cell in the file, counted from 0
     std::uint64_t other = 0;  ///< the second cell of a pair, never below `cell`; equal to `cell` if the defect is not
@@ -56,7 +56,7 @@ struct MeshCheck {
   Finding inverted;
   /// Boundary faces that overlap a boundary face on the other side of the same plane (to 1e-6 of their edges), at
   /// hanging nodes or where a quadrilateral is cut along different diagonals. The image is correct where such faces
-  /// match in space, but the faces do not agree bit for bit, as a face shared by two cells does.
+  /// match in space. However, they do not match bit for bit, unlike a face that two cells share.
   Finding non_conforming_faces;
   /// Pairs of cells whose tets overlap along every direction by more than 1e-6 of the smaller tet's longest edge. Tets
   /// that are flat or have an aspect ratio above 1e6 are ignored. A cell so warped that its own tets overlap is a pair

@@ -25,9 +25,9 @@ struct MeshCounts {
   std::uint64_t cells_tangled = 0;          ///< kept: their tets differ in orientation, so they overlap
   std::uint64_t cells_quadratic = 0;        ///< kept: second or higher order (HigherOrderCells)
   std::uint64_t cells_polyhedra = 0;        ///< kept: polyhedra and convex point sets
-  std::uint64_t polyhedra_from_inside = 0;  ///< polyhedra split from a point that was added inside
-  std::uint64_t polyhedra_in_pieces = 0;    ///< polyhedra cut into tets one by one, because the whole inside is visible
-                                            ///< from no single point
+  std::uint64_t polyhedra_from_inside = 0;  ///< polyhedra split into tets around a point that was added inside
+  std::uint64_t polyhedra_in_pieces = 0;    ///< polyhedra from which single tets were cut, because no single point sees
+                                            ///< the whole inside
   std::uint64_t polyhedra_tangled = 0;      ///< polyhedra that are also counted in cells_tangled
   /// Kept: cells that have the corners of an earlier cell; both are drawn.
   std::uint64_t cells_duplicate = 0;
@@ -54,14 +54,14 @@ struct MeshCounts {
 /// about cells that the program prints, `meaning` follows the number.
 struct MeshCounter : Counter<MeshCounts> {
   enum class Fate {
-    other,  ///< not in the line about cells
+    other,  ///< the counter is not in the line about cells
     kept,
-    dropped  ///< read, but not in the mesh
+    dropped  ///< the cells were read, but are not in the mesh
   };
   Fate fate;
 };
 
-/// All of them, in the order of reports.
+/// All counters of MeshCounts, in the order of reports.
 inline constexpr std::array<MeshCounter, 32> mesh_counters{{
     {{"cells/read", &MeshCounts::cells_read, MeshCounter::Together::sum, false, "of the file"},
      MeshCounter::Fate::other},
@@ -151,11 +151,11 @@ struct HigherOrderCells {
 using HigherOrderCounter = Counter<HigherOrderCells>;
 using HigherOrderBound = Counter<HigherOrderCells, double>;
 
-/// All of them, in the order of reports.
+/// All counters of HigherOrderCells, in the order of reports.
 inline constexpr std::array<HigherOrderCounter, 3> higher_order_counters{{
     {"divided", &HigherOrderCells::divided, HigherOrderCounter::Together::sum, false, "cells divided into tets"},
     {"by_corners", &HigherOrderCells::by_corners, HigherOrderCounter::Together::sum, false, "cells drawn by corners"},
-    {"tets", &HigherOrderCells::tets, HigherOrderCounter::Together::sum, false, "made of those divided"},
+    {"tets", &HigherOrderCells::tets, HigherOrderCounter::Together::sum, false, "tets made of the divided cells"},
 }};
 inline constexpr std::array<HigherOrderBound, 3> higher_order_bounds{{
     {"tolerance", &HigherOrderCells::tolerance, HigherOrderBound::Together::largest, false, "asked for, or aimed at"},

@@ -20,10 +20,10 @@ inline namespace v0_1 {
 class Trace;
 
 /// Defaults for dividing cells of second and higher order into tets. The tolerance is relative: to the mesh's diagonal
-/// for positions, to the field's range for values. With the default number of tets, the limit is about 2^18 plus twice
-/// as many tets as the mesh needs without the 48 worst of the tets between its cells' corners, but at most 2^21 or four
-/// tets for each tet between corners, whichever is more. This limit prevents a damaged node from requiring
-/// disproportionate memory. Any other number is used unchanged.
+/// for positions, to the field's range for values. Let n be the number of tets between the corners of these cells, and
+/// m the number of tets that they need without the worst 48 of the n tets. With the default number of tets, the limit
+/// is about 2^18 + 2 m, but at most 2^21 or 4 n, whichever is more, so that a damaged node does not require
+/// disproportionate memory. Any other number is used unchanged as the limit.
 inline constexpr double default_higher_order_tolerance = 1e-4;
 inline constexpr std::uint64_t default_higher_order_tets = std::uint64_t{1} << 21;
 
@@ -38,7 +38,7 @@ struct ReadOptions {
   // Meshes.
   /// What to show if a mesh has no meaningful field and the caller specifies neither a field nor a transfer function.
   /// Constants and labels (ids, indices, ranks, materials) are not meaningful. true: the mesh's shape, as point data
-  /// named `shape_field_name`, whose values are the distances of the points towards the eye of the default view. false:
+  /// named `shape_field_name`, whose values increase towards the eye of the default view. false:
   /// the first field, labels last, or the value 1 if there is no field.
   bool shape = false;
   bool smooth = false;  ///< convert cell data to point data: averages weighted by the volumes of the tets
@@ -85,8 +85,8 @@ struct ReadOptions {
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
 
   /// Grids: whether values are labels. Labels are not interpolated: each sample fills its voxel. None: the header of
-  /// the file decides or, if it does not state this, the values: whole numbers that neighbouring samples share are
-  /// labels.
+  /// the file decides. If the header does not state this, the values decide: whole numbers that neighbouring samples
+  /// share are labels.
   std::optional<bool> labels{};
 
   /// For grids whose samples must be unpacked (.vti, .vtr, .nii.gz, ...): if the samples take more than half of this

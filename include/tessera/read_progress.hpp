@@ -20,11 +20,11 @@ struct ReadProgress {
   double expected_seconds = 0;
 };
 
-/// Callback for ReadOptions::progress. The thread that opens the file calls it about ten times a second while another
-/// program's format is read, then once for each two megabytes or piece copied, so it must be fast. It is not called for
-/// files that are read in less than a tenth of a second, for formats whose library reports no progress, and for formats
-/// that Tessera parses itself. For VTK's XML files it is only called in the stage `copying`. It must not throw or call
-/// the library.
+/// Callback for ReadOptions::progress. The thread that opens the file calls it about ten times a second while the
+/// format's library reads the file, then once for each piece or each two megabytes copied, so it must be fast. It is
+/// not called for files that are read in less than a tenth of a second, for formats whose library reports no progress,
+/// and for formats that Tessera parses itself. For VTK's XML files it is only called in the stage `copying`. It must
+/// not throw or call the library.
 using ReadProgressFunction = std::function<void(const ReadProgress&)>;
 
 }  // namespace v0_1

@@ -37,8 +37,8 @@ struct PixelIndex {
 /// tested against every tet or voxel on its path.
 class TESSERA_EXPORT Reference {
  public:
-  /// Of the settings only the emission, the surfaces and the shading of grids are used. Throws Error(bad_input) for an
-  /// invalid view, an empty transfer function, and a mesh that is not whole on this rank.
+  /// Only the emission, the surfaces and the shading of grids are used from the settings. Throws Error(bad_input) for
+  /// an invalid view, an empty transfer function, and a mesh that is not whole on this rank.
   Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
             const Settings& settings = {});
   ~Reference();

@@ -54,7 +54,7 @@ class TESSERA_EXPORT SampleSource {
   /// Error(system_failure) if the file can no longer be read.
   void read(const SampleBox& box, const SampleLayout& layout, std::span<std::byte> destination) const;
 
-  /// Writes contiguous samples. T is the stored type, float or double.
+  /// Writes contiguous samples. T must be float, double or the stored type.
   template <class T>
   void read(const SampleBox& box, std::span<T> destination) const;
 

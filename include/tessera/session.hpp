@@ -28,7 +28,8 @@ struct BalancePictures {
   Image bricks;
   /// The cost of each pixel, from black (no work) through blue, red and yellow to white (the most expensive pixel),
   /// with the same white lines as in `bricks`. Opaque. With sort-last, the image contains the outlines of the parts
-  /// instead, with colours from blue to white by the CPU time of the process relative to the longest.
+  /// instead, with colours from blue to white by the CPU time of the process, relative to the longest CPU time of any
+  /// process.
   Image cost;
 };
 

@@ -28,7 +28,7 @@ enum class Rasterizer {
 
 /// What projectors send to compositors (meshes on several ranks).
 enum class Exchange {
-  runs,      ///< runs of touching segments, already composited; whole pixels from a projector that has all cells. The
+  runs,      ///< runs of touching segments, already composited; a projector that has all cells sends whole pixels. The
              ///< image differs from that of `segments` by at most 2e-6. If cells of several ranks overlap, segments are
              ///< sent instead (FrameStatistics::overlapping)
   segments,  ///< raw ray segments, as in Juliachs et al. 2007. On machines of one instruction set the image has the
@@ -54,7 +54,7 @@ struct Partition {
 enum class Balance {
   learned,    ///< by the times of the previous frame's tiles or, if the views differ much, by pilot rays
   accurate,   ///< by the length of each ray inside the bricks
-  backface,   ///< by the back faces of the bricks
+  backface,   ///< by the back faces of the bricks, with interpolated weights of the corners
   splatting,  ///< by spheres as wide as the bricks
   previous,   ///< by the CPU times of the previous frame, each distributed evenly over the rectangle of its process;
               ///< for comparison
@@ -70,7 +70,7 @@ enum class Distribution {
 /// How the processes of sort-last exchange the pixels that they composite (Moloney 2008, 5.2.2 and A.5).
 enum class DirectSend {
   asynchronous,  ///< packets of pixels, composited as they arrive (Algorithm 1 of the thesis)
-  synchronous    ///< one pair of processes after the other exchanges all its pixels at once; for comparison
+  synchronous  ///< pairs of processes take turns, and each pair exchanges all its pixels in one message; for comparison
 };
 
 /// What the brick cache evicts first (Moloney 2008, 3.3).
@@ -79,8 +79,8 @@ enum class CachePolicy {
   proximity  ///< the brick farthest from the view frustums of the current and the next view
 };
 
-/// Size of the bricks at the volume's high end along each axis: their own number of voxels (`variable`) or that of all
-/// other bricks (`fixed`) (Moloney 2008, Table 6.2).
+/// Memory of the bricks at the volume's high end along each axis: for the voxels that they contain (`variable`), or as
+/// much as for all other bricks (`fixed`) (Moloney 2008, Table 6.2).
 enum class EdgeBricks { variable, fixed };
 
 /// Where ray segments of meshes are sorted and composited.
@@ -148,8 +148,8 @@ struct RankSettings {
   /// most 0.25.
   double balance_resolution = 0.5;
   std::vector<double> balance_weights{};  ///< grids: the share of the work for each rank; empty: equal shares
-  /// Grids, instead of weights: ranks whose threads took more CPU time than the mean in the previous frames get a
-  /// smaller part of the next frame. The first frame is split into equal parts.
+  /// Grids: used instead of `balance_weights`. Ranks whose threads took more CPU time than the mean in the previous
+  /// frames get a smaller part of the next frame. The first frame is split into equal parts.
   bool balance_measured = false;
 };
 
@@ -207,8 +207,8 @@ struct Peel {
 
 /// Settings for one frame.
 struct FrameSettings {
-  /// Also return the deep image of the frame. Flattened, it equals the image. If it is cut at any depth by OpenEXR's
-  /// rules, the error is below `deep_accuracy` (linear RGBA, 1e-6 to 1).
+  /// Also return the deep image of the frame. Flattened, it equals the image. If the deep image is cut at any depth by
+  /// OpenEXR's rules, the error is below `deep_accuracy` (linear RGBA, 1e-6 to 1).
   bool deep = false;
   double deep_accuracy = 1e-3;
   /// Grids: return RenderedFrame::uncertainty, which verify() uses to choose the pixels that it checks first.

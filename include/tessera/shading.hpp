@@ -11,7 +11,7 @@ inline namespace v0_1 {
 /// inside a voxel, and constant over the interval; intervals also end at surfaces. Let l be the unit vector to the
 /// light, v the unit vector to the eye along the ray, and h the unit vector halfway between them. Colour c becomes c *
 /// (ambient + diffuse |n.l|) + specular |n.h|^shininess. The colour does not change in cell data and where the gradient
-/// is zero (values that differ by less than 1e-12 of themselves). Extinction never changes.
+/// is zero (the relative difference of the values is below 1e-12). Extinction never changes.
 ///
 /// Source  Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 struct Shading {

@@ -28,9 +28,9 @@ struct RenderedFrame {
   /// With FrameSettings::peel: Peel::layers images. Each layer contains the light between two cuts of the rays, without
   /// attenuation by anything in front. The first layer starts at the eye. Composited front to back, the layers equal
   /// the image. `depth` is the depth where the layer's light begins; it is infinite where the layer is empty, as beyond
-  /// the end of a ray. Each layer is correct to 1e-5. Surfaces cannot be cut: a surface with which a layer reaches the
-  /// threshold is the end of that layer. With FrameSettings::deep, the samples of the deep image are the layers. Their
-  /// density is not constant, so that cutting them is not exact.
+  /// the end of a ray. Each layer is correct to 1e-5. Surfaces cannot be cut: if a layer reaches the threshold at a
+  /// surface, the layer ends with this surface. With FrameSettings::deep, the samples of the deep image are the layers.
+  /// Their density is not constant, so that cutting them is not exact.
   std::vector<Image> layers{};
   std::optional<Peel> peel{};  ///< how the layers were cut; none if there are no layers
 };
@@ -54,8 +54,8 @@ class Sink {
   /// Whether tile() should be called at all.
   [[nodiscard]] virtual bool wants_tiles() const { return true; }
   virtual void tile(const Tile& /*tile*/) {}
-  /// Called, when a list of frames is rendered, with each complete frame, in order. The last frame may be a stopped
-  /// one, on every rank.
+  /// Called with each complete frame of a list of frames, in order. If rendering is stopped, the last call passes the
+  /// stopped frame, on every rank.
   virtual void frame(RenderedFrame&& /*frame*/) {}
   /// Returns an image that the sink no longer needs. Called before the first pixel of a frame of a mesh on several
   /// ranks, which reuses the memory of the image, since new memory is slow to fill. The contents of the image do not

@@ -68,8 +68,8 @@ class TESSERA_EXPORT State {
   /// The options for reading a file. open() determines the tolerance of higher-order cells unless an option states it.
   [[nodiscard]] ReadOptions read_options(DataKind kind) const;
   /// Opens a grid or a mesh, in one or several pieces, like Dataset::open() with read_options(). Higher-order cells are
-  /// divided as finely as the option `accuracy` requires (read_for_accuracy()). One time step of the file is opened:
-  /// that of the option, whose number counts the steps in the file.
+  /// divided as finely as the option `accuracy` requires (read_for_accuracy()). Only one time step of the file is
+  /// opened: the step that the option `time-step` states, counted within the file.
   [[nodiscard]] Dataset open(std::span<const std::filesystem::path> files, const Communicator& communicator = {}) const;
   /// The settings include the surfaces of blocks, which are read from the data's files. They include shading if the
   /// default transfer function intends it and no option excludes it. Throws Error(bad_input) for a block of data
@@ -78,8 +78,8 @@ class TESSERA_EXPORT State {
   [[nodiscard]] LoadedTransferFunction transfer_function(const Dataset& data) const;
   /// The view. If the camera file contains several views, it is the first one.
   [[nodiscard]] View view(const Dataset& data) const;
-  /// The annotation with the words in its texts replaced: {field}, {time}, {file}, {min} and {max} by those of the
-  /// data, {frame} by `frame`.
+  /// The annotation with the words in its texts replaced: {field}, {time}, {file}, {min} and {max} by the data's
+  /// values, {frame} by `frame`.
   [[nodiscard]] Annotation annotation(const Dataset& data, int frame = 0) const;
   [[nodiscard]] ImageFileOptions image_file_options() const;
 

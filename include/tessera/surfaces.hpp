@@ -21,9 +21,9 @@ struct SurfaceLight {
 /// A level set of the field: all places along a ray where the field changes from below the value to the value or above,
 /// or back. The surface is the boundary, inside the data set, of the region where the field is at or above the value.
 /// The boundary of the data set itself and of blank parts is not included. If the field has the value on a whole face,
-/// a ray meets the surface once there, and only if the cells of the face are on different sides of the value. In each
-/// cell the surface is as exact as the field; in a voxel all roots of a cubic are found. The normal is the field's
-/// gradient at the surface.
+/// a ray meets the surface once there, and only if the field is above the value in one cell of the face and below it in
+/// the other. In each cell the surface is as exact as the field; in a voxel all roots of a cubic are found. The normal
+/// is the field's gradient at the surface.
 struct IsoSurface {
   double value = 0;
   std::optional<glm::dvec3> color{};  ///< linear RGB; none: the colour of the transfer function at the value

@@ -26,9 +26,10 @@ struct Knot {
 ///
 /// Steps  Two knots with the same value make a step. The function is right-continuous there: at the step it has the
 ///        value of the later knot.
-/// Holds  There is at least one knot. Values are finite and do not decrease. At most two knots have the same value; of
-///        more knots only the first and the last are kept. Values less than 2.2e-308 apart are the same value. Colours
-///        are from 0 to 1e30, extinctions from 0 to 1e100. A single knot is a constant function.
+/// Holds  There is at least one knot. Values are finite and do not decrease. At most two knots have the same value: if
+///        more knots are given for a value, only the first and the last are kept. Values less than 2.2e-308 apart are
+///        the same value. Colours are from 0 to 1e30, extinctions from 0 to 1e100. A single knot is a constant
+///        function.
 class TESSERA_EXPORT TransferFunction {
  public:
   TransferFunction() = default;
@@ -48,7 +49,9 @@ class TESSERA_EXPORT TransferFunction {
 
  private:
   std::vector<Knot> knots_;
-  std::vector<std::size_t> visible_knots_before_, emitting_knots_before_;  ///< prefix counts; one more than knots
+  std::vector<std::size_t> visible_knots_before_, emitting_knots_before_;  ///< the number of visible or emitting knots
+                                                                           ///< before each knot; one element more than
+                                                                           ///< knots
 };
 
 /// Returns the function as JSON, {"knots": [[value, red, green, blue, extinction], ...]}, with its knots unchanged and

@@ -39,8 +39,8 @@ struct Verification {
   std::vector<Tally> layers{};
   double layer_bound = 0;
   bool layers_met = true;
-  /// Whether no pixel has an error above the bound except excused pixels, and these are few. For layers the same is
-  /// required.
+  /// Whether only excused pixels have errors above the bound, and there are few excused pixels. The same is required of
+  /// layers.
   bool met = true;
 };
 

@@ -23,9 +23,9 @@ TESSERA_EXPORT void write_mesh(const MeshArrays& mesh, const std::filesystem::pa
 /// exactly one of the .vtu files.
 TESSERA_EXPORT void write_mesh_pieces(const MeshArrays& mesh, const std::filesystem::path& file, int pieces,
                                       const Partition& partition = {});
-/// For use before reading: throws Error(bad_input) unless `input`, if not null, is a mesh's file, a mesh can be written
-/// to `file`, in `pieces` pieces if a number is given, and none of the files would be `input` or one of its pieces.
-/// Files of these names may exist, unless they are read.
+/// For use before reading: throws Error(bad_input) if `input` is given and is not a mesh's file, if a mesh cannot be
+/// written to `file` (in `pieces` pieces, if a number is given), or if one of the written files would replace `input`
+/// or one of its pieces. Other existing files are replaced.
 TESSERA_EXPORT void check_mesh_output(const std::filesystem::path& file, const InputFile* input,
                                       std::optional<int> pieces = std::nullopt);
 

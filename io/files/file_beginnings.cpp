@@ -219,7 +219,7 @@ bool begins_as_netcdf(const FileBeginning& file) {
          !begins_as_exodus(file) && !begins_as_minc(file);
 }
 bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with(hdf5_signature); }
-/// The four bytes before it are "@(#)" with the highest bit of some set.
+/// The four bytes before "ADF" are "@(#)"; some of these bytes have the highest bit set.
 bool begins_as_adf(const FileBeginning& file) {
   return file.text.size() > 4 && file.text.substr(4).starts_with("ADF Database Version");
 }

@@ -19,7 +19,7 @@ enum class Reader : std::uint8_t { vtk, tetgen, gmsh, dicom, xdmf, med };
 struct ReaderProgram {
   Reader reader;
   const char* program;  ///< file name of the program
-  const char* does;     ///< what it does to files, as a participle
+  const char* does;     ///< what the program does to files, as a participle
 };
 
 /// One row for each Reader, in the order of the enumeration.

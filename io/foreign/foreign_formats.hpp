@@ -16,7 +16,7 @@ namespace tessera::io {
 /// The name of a reader, as a template argument. The names are defined in the programs' main files under readers/.
 struct ReaderName {
   template <std::size_t n>
-  consteval ReaderName(const char (&name)[n]) {  // NOLINT(google-explicit-constructor): a literal stands for it
+  consteval ReaderName(const char (&name)[n]) {  // NOLINT(google-explicit-constructor): literals convert to it
     std::copy_n(name, n, text);
   }
   char text[16]{};
@@ -32,8 +32,8 @@ struct ForeignReader {
 /// Reads all blocks and arrays of one time step, by default the last. Grids become hexahedra.
 cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const MeshOptions& options);
 
-/// Opens the file as a volume. Throws Error(bad_input) for a mesh, and for a file that only its name identifies. DICOM
-/// files are opened even then, because they may lack the DICM mark.
+/// Opens the file as a volume. Throws Error(bad_input) for a mesh, and for a file that is identified by its name alone.
+/// Only DICOM files are opened in that case, because they may lack the DICM mark.
 VolumeFile read_foreign_volume(const InputFile& file, const ForeignReader& by, const VolumeOptions& options);
 
 /// Whether the file contains exactly one regular or rectilinear grid and so is a volume. The helper inspects the file's
@@ -78,8 +78,8 @@ scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& 
 /// Reads HDF5. The content of the file determines which kind of HDF5 file it is.
 cells::MeshBlocks read_hdf5(const InputFile& file, const MeshOptions& options);
 
-/// Readers of files of solvers. VTK's readers do not detect that another kind of file has one of these names, so these
-/// functions check the content.
+/// Readers of files of solvers. VTK's readers do not detect files of another kind under the name of a solver's file, so
+/// these functions check the content.
 cells::MeshBlocks read_openfoam(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options);

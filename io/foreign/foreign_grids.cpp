@@ -67,7 +67,7 @@ std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPa
     if ((bits[k] & (point ? cells::hidden_point : cells::hidden_cell)) != 0) hidden.push_back(k);
   if (point) {
     if (std::ranges::any_of(bits_of(part.cell_fields), [](std::uint8_t b) { return (b & cells::hidden_cell) != 0; }))
-      notes.emplace_back("hidden cells are shown: they apply to cell data only");
+      notes.emplace_back("hidden cells are shown, because hiding cells affects only cell data");
   }
   return hidden;
 }
@@ -110,7 +110,9 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const cells::F
 
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   if (opened.contents.parts.size() != 1)
-    throw scene::bad_input(fmt::format("{}: it does not hold exactly one grid; give a volume", opened.source));
+    throw scene::bad_input(
+        fmt::format("{}: it contains {} grids, but a volume must have one; give a file with a single grid",
+                    opened.source, opened.contents.parts.size()));
   const std::string& source = opened.source;
   const ForeignPart& part = opened.contents.parts.front();
   VolumeFile result;
@@ -135,7 +137,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   }
   add_foreign_fields(opened, part, Association::point, points, block, source);
   add_foreign_fields(opened, part, Association::cell, cells, block, source);
-  if (block.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write one with it", source));
+  if (block.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write it with a field", source));
   const std::vector<std::vector<cells::FieldTally>> tallies = {cells::tally_fields(std::span(&block, 1))};
   result.fields = cells::summarize_fields(tallies);
   const cells::FieldChoice choice = cells::choose_field(options.field, result.fields, source);

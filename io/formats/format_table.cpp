@@ -17,7 +17,7 @@ constexpr std::array by_vtk = {Reader::vtk}, by_tetgen = {Reader::tetgen}, by_gm
                      by_dicom = {Reader::dicom}, by_xdmf = {Reader::xdmf}, by_med = {Reader::med};
 constexpr std::array by_vtk_and_tetgen = {Reader::vtk, Reader::tetgen};
 
-constexpr const char* filled = "closed; filled with tets, field depth in addition to its own";
+constexpr const char* filled = "must be closed; filled with tets, with a field depth added";
 constexpr const char* pieces = "pieces fill the whole and have the same arrays";
 
 /// The first parameters are members of every row, the last ones optional members.
@@ -61,7 +61,7 @@ constexpr std::array rows = {
     row("OpenFOAM case", ".foam .openfoam", mesh, by_vtk,
         "the case's directory or a file in it; also decomposed; polyhedra", begins_as_openfoam,
         {.read_mesh = read_openfoam, .time_steps = steps_by<Reader::vtk, "openfoam">, .share_reader = "openfoam"}),
-    row("EnSight 6 or Gold", ".case .encas .sos", mesh, by_vtk, "all parts, of .sos those of all its cases",
+    row("EnSight 6 or Gold", ".case .encas .sos", mesh, by_vtk, "all parts; a .sos: the parts of all its cases",
         begins_as_ensight, {.read_mesh = read_ensight, .time_steps = steps_by<Reader::vtk, "ensight">}),
     row("CGNS", ".cgns", mesh, by_vtk, "HDF5 or ADF", begins_as_adf,
         {.read_mesh = mesh_by<Reader::vtk, "cgns">,
@@ -73,7 +73,7 @@ constexpr std::array rows = {
          .open_volume = grid_by<Reader::vtk, "vtk_hdf">,
          .time_steps = steps_by<Reader::vtk, "vtk_hdf">}),
     row("MED", ".med .rmed", mesh, by_med,
-        "Salome's, of version 2.3 and later; HDF5, by its name; fields of nodes and cells", nullptr,
+        "Salome's format from version 2.3 on; HDF5, recognized by its name; fields of nodes and cells", nullptr,
         {.container = Container::hdf5,
          .read_mesh = mesh_by<Reader::med, "med">,
          .time_steps = steps_by<Reader::med, "med">}),
@@ -95,7 +95,7 @@ constexpr std::array rows = {
         {.read_mesh = read_fluent, .time_steps = steps_by<Reader::vtk, "fluent">}),
     row("GAMBIT", ".neu", mesh, by_vtk, "", begins_as_gambit,
         {.read_mesh = read_gambit, .time_steps = steps_by<Reader::vtk, "gambit">}),
-    row("AVS UCD", ".inp .ucd", mesh, by_vtk, "text; binary by its name", begins_as_avs_ucd,
+    row("AVS UCD", ".inp .ucd", mesh, by_vtk, "text, or binary recognized by its name", begins_as_avs_ucd,
         {.read_mesh = read_avs_ucd, .time_steps = steps_by<Reader::vtk, "avs_ucd">}),
     row("Tecplot", ".tec", mesh, {}, "text; ordered zones, bricks, tetrahedra, polyhedra; solution times are steps",
         begins_as_tecplot, {.read_mesh = read_tecplot, .time_steps = tecplot_time_steps}),
@@ -105,15 +105,16 @@ constexpr std::array rows = {
         {.read_mesh = read_medit_text}),
     row("Medit binary", ".meshb", mesh, {}, "versions 1 to 4, without .sol; references are blocks", begins_as_meshb,
         {.read_mesh = read_medit_binary}),
-    row("I-DEAS universal", ".unv", mesh, by_gmsh, "meshes; by its name", nullptr,
+    row("I-DEAS universal", ".unv", mesh, by_gmsh, "meshes; recognized by its name", nullptr,
         {.read_mesh = mesh_by<Reader::gmsh, "by_gmsh">}),
-    row("Nastran bulk data", ".bdf .nas", mesh, {}, "solid elements, a block a property; coordinate systems; INCLUDE",
-        nullptr, {.read_mesh = read_nastran_mesh}),
+    row("Nastran bulk data", ".bdf .nas", mesh, {},
+        "solid elements, one block per property; coordinate systems; INCLUDE", nullptr,
+        {.read_mesh = read_nastran_mesh}),
     row("SU2", ".su2", mesh, {}, "meshes of 3 dimensions; zones are blocks", begins_as_su2, {.read_mesh = read_su2}),
     row("PLOT3D", ".xyz .p3d .x .bin", mesh, by_vtk, "text or binary; the solution next to it, or `q`; IBLANK 0 hides",
         nullptr, {.read_mesh = read_plot3d}),
-    row("PLOT3D list", "", mesh, by_vtk, "ParaView's, of grids and solutions by time", begins_as_plot3d_list,
-        {.read_mesh = read_plot3d_list, .time_steps = plot3d_list_time_steps}),
+    row("PLOT3D list", "", mesh, by_vtk, "ParaView's list of grids and solutions at several times",
+        begins_as_plot3d_list, {.read_mesh = read_plot3d_list, .time_steps = plot3d_list_time_steps}),
     row("TetGen mesh", ".node .ele", mesh, {}, "either name finds the other", nullptr, {.read_mesh = read_node_ele}),
     row("raw tetrahedra", ".tets", mesh, {}, "bytes in docs/FORMATS.md; ranks read ranges", nullptr,
         {.read_mesh = read_tets}),
@@ -184,9 +185,10 @@ constexpr std::array rows = {
     unread("3D scene", ".fbx .dae .3ds .blend .3mf .usd .usdc .usdz .abc",
            "a surface; save it as .stl or .ply in Blender"),
     unread("OpenVDB", ".vdb", "its library is not linked; save it as .vti in ParaView", begins_as_vdb),
-    unread("NanoVDB", ".nvdb", "its library is not linked; save it as .vti from OpenVDB by ParaView", begins_as_nvdb),
+    unread("NanoVDB", ".nvdb", "its library is not linked; convert it to OpenVDB, and save that as .vti in ParaView",
+           begins_as_nvdb),
     unread("Houdini geometry", ".bgeo .hip",
-           "its format is not open; save volumes as .vdb, and these as .vti in ParaView"),
+           "its format is not open; save volumes as .vdb, then the .vdb as .vti in ParaView"),
     unread("ADIOS2", ".bp", "open it in ParaView and save it as .vtm"),
     unread("Nek5000", ".nek5000", "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_nek5000),
     unread("MFEM", "", "its library is not packaged; have MFEM write .vtu", begins_as_mfem),
@@ -207,7 +209,7 @@ constexpr std::array rows = {
            begins_as_numpy),
     unread("MATLAB data", ".mat", "write it as .raw by fwrite, or .nrrd by nrrdWriter"),
     unread("Zarr", ".zarr", "write it as .nrrd by pynrrd, or NetCDF by xarray"),
-    // VTK XML of a kind that no other row has: damaged, or its reader determines the content.
+    // VTK XML that no other row recognizes: the file is damaged, or only its reader can determine the content.
     row("VTK XML", "", mesh, by_vtk, "", begins_as_vtk_xml,
         {.container = Container::vtk_xml, .is_listed = false, .read_mesh = read_vtk_xml}),
 };

@@ -25,8 +25,8 @@ std::uint8_t by_formula(double linear) {
   return static_cast<std::uint8_t>(std::lround(colormaps::encode_srgb(linear) * 255));
 }
 
-/// Bisects the doubles in the order of their bit patterns, which is that of their values. The result is exactly that of
-/// the formula.
+/// Bisects the doubles in the order of their bit patterns, which is also the order of their values. The result is
+/// exactly that of the formula.
 Codes make_codes() {
   Codes codes;
   for (int code = 1; code < 256; ++code) {
@@ -48,7 +48,7 @@ std::uint8_t srgb_code(double linear) {
   static const Codes codes = make_codes();
   linear = std::clamp(linear, 0.0, 1.0);
   std::size_t code = codes.code[static_cast<std::size_t>(linear * Codes::parts)];
-  while (linear >= codes.begin[code + 1]) ++code;  // at most one step: a part is narrower than the first code
+  while (linear >= codes.begin[code + 1]) ++code;  // at most one step: parts are narrower than a code's interval
   return static_cast<std::uint8_t>(code);
 }
 

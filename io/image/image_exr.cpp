@@ -31,8 +31,8 @@ namespace {
 
 constexpr std::array<const char*, 4> channel_names{"R", "G", "B", "A"};
 
-/// OpenEXR compresses on a process-wide thread pool, which is empty until it is resized. It only grows here: a caller's
-/// own setting is kept. 0: only this thread.
+/// OpenEXR compresses on a process-wide thread pool, which is empty until it is resized. This function only enlarges
+/// the pool, so that a caller's larger setting is kept. Returns 0 if only this thread compresses.
 int compressing_threads(const ImageFileOptions& options) {
   const int threads = scene::threads_for(options.threads);
   if (threads < 2) return 0;
@@ -64,8 +64,8 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
         out[i] = Number(row[i]);
       }
     }
-    // The base of a slice is the address of pixel (0, 0), before the buffer. It is computed as an integer, because a
-    // pointer there would be invalid, and never dereferenced.
+    // The base of a slice is the address of pixel (0, 0), which is before the buffer. The address is computed as an
+    // integer, because pointer arithmetic outside the buffer is invalid, and it is never dereferenced.
     const auto base = [&](const void* first, std::size_t row_bytes) {
       // NOLINTNEXTLINE(performance-no-int-to-ptr)
       return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -

@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Write = std::function<void(const void*, std::size_t)>;
 
-// The only filter. Trying all filters for every row took as long as compression and saved 2 %.
+// The only filter that is used. Trying all filters for every row took as long as compression and saved 2 %.
 constexpr std::uint8_t filter_up = 2;
 
 struct Strip {

@@ -11,7 +11,7 @@ namespace tessera::io {
 
 /// An image (kind image of io/foreign/messages/foreign_data.hpp) of cells, or trees of cells.
 struct OpenedAmrBlock {
-  const ForeignFile* file;  ///< null if no reader program holds the block; then it has no ghosts
+  const ForeignFile* file;  ///< null if no reader program holds the block; the block then has no ghosts
   const ForeignPart* part;
 };
 

@@ -10,7 +10,7 @@
 
 namespace tessera::io {
 
-/// A data set in a file of its own that a VTK file lists: a piece of a .pvtu, or a block of a .vtm or .vtpc.
+/// A data set in a separate file that a VTK file lists: a piece of a .pvtu, or a block of a .vtm or .vtpc.
 struct ListedPiece {
   std::filesystem::path file;
   std::string list;   ///< the file that lists it

@@ -16,7 +16,7 @@ namespace tessera::io {
 /// and Dimension may be on the line of the keyword or after it. Numbers of all other keywords are skipped.
 std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std::string& source);
 
-/// Parses a binary Medit mesh: tetrahedra, pyramids, prisms and hexahedra; of second-order cells only tetrahedra. The
+/// Parses a binary Medit mesh of linear tetrahedra, pyramids, prisms and hexahedra, and second-order tetrahedra. The
 /// cells of each reference number become a block; if there are several blocks, the cell field Reference contains the
 /// numbers (cells/block_groups.hpp). Throws Error(bad_input) with the position and a remedy for damaged files,
 /// two-dimensional meshes and unsupported cells. Allocates nothing before the file is known to be long enough.

@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> files_of_parts(const InputFile& file);
 
 /// The result of reading a part, without the mesh. Small, except for `used_points`.
 struct PartSummary {
-  MeshCounts counts;  ///< the first part counts the points of a .tets file; no part counts its unused points
+  MeshCounts counts;  ///< the first part counts the points of a .tets file; no part counts the file's unused points
   /// Bit v is set if this part uses point v of a .tets file; empty for other formats. The union over all parts
   /// determines how many points are unused.
   std::vector<std::uint64_t> used_points;

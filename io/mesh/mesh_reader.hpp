@@ -16,7 +16,7 @@ namespace tessera::io {
 /// even if they come from different pieces. Throws Error(bad_input) in one line for a missing, truncated, malformed or
 /// empty file, an unknown format or field, or if no cell remains; Error(system_failure) if memory runs out. VTK's own
 /// messages never reach stderr.
-/// Does not apply `options.selection` (cells::select). `options.trace` and `threads` are the caller's.
+/// Does not apply `options.selection` (see cells::select). The caller applies `options.trace` and `options.threads`.
 cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {});
 
 /// Reads several files as the pieces of one mesh; their points are not merged. Each file must have the chosen field.
@@ -24,7 +24,8 @@ cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {}
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options = {});
 
 /// The cells of a file's chosen blocks before they are split, and the names of all its blocks. Throws like read_mesh,
-/// but not if there are no cells, and an unknown block's error may quote arbitrary bytes of the file's name.
+/// with two differences: it accepts a file without cells, and the error for an unknown block may quote arbitrary bytes
+/// of the file's name.
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options);
 
 /// Returns the number of time steps of a mesh file and their times. Does not read the mesh if the format stores the

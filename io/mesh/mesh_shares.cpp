@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// Removes and returns the digits after the last point of a name.
+/// Removes and returns the digits after the last dot of a name.
 std::optional<std::string> last_number(std::string& name) {
   const std::size_t point = name.rfind('.');
   if (point == std::string::npos || point == 0) return std::nullopt;

@@ -241,13 +241,13 @@ class NastranDeck {
     if (!is_bulk_) return;
     const char first = line[0];
     const bool continues = first == '+' || first == '*' || first == ' ' || first == ',' || first == '\t';
-    if (continues && entry_.name_.empty()) return;  // of an entry that is not used
+    if (continues && entry_.name_.empty()) return;  // continues an entry that is not used
     std::vector<std::string> fields;
     if (!continues) {
       end_entry();
       std::string name = upper_case(trimmed(std::string_view(line).substr(0, line.find_first_of(", \t*\r"))));
       is_image_ = name.starts_with('=');
-      if (is_image_ && before_.name_.empty()) return;  // of an entry that is not used
+      if (is_image_ && before_.name_.empty()) return;  // replicates an entry that is not used
       const std::string images = is_image_ ? std::exchange(name, before_.name_).substr(1) : "";
       name.resize(std::min(name.size(), small_field));
       has_ended_ = name == "ENDDATA";

@@ -171,7 +171,7 @@ std::uint64_t check_plot3d_solution(const std::filesystem::path& q_file, const P
   if (!walk.good)
     throw scene::bad_input(
         fmt::format("{}: its {} bytes are not the 4 + 5 n numbers per grid of a PLOT3D solution; it is truncated or of "
-                    "another kind (function, OVERFLOW)",
+                    "another kind (function file, OVERFLOW)",
                     q_file.string(), size));
   return walk.left();
 }

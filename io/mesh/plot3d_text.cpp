@@ -115,7 +115,7 @@ std::uint64_t check_plot3d_text_solution(std::string_view text, const Plot3dLayo
   if (numbers < needed)
     throw scene::bad_input(
         fmt::format("{}: it has only {} of the {} numbers of a PLOT3D solution; it is truncated or of another kind "
-                    "(function, OVERFLOW)",
+                    "(function file, OVERFLOW)",
                     source, numbers, needed));
   return numbers - needed;
 }

@@ -85,7 +85,7 @@ struct Zone {
 void read_cells(Lines& lines, Zone& zone) {
   if (zone.has_cells) lines.fail("NELEM is given twice in one zone; correct it");
   zone.has_cells = true;
-  constexpr std::size_t least = 9;  // shortest cell: "10 0 1 2 3" is longer, a triangle is "5 0 1 2" and a line end
+  constexpr std::size_t least = 9;  // the shortest cell is a triangle: "5 0 1 2" and a line end
   const std::size_t count = lines.count("NELEM", least - 1);
   cells::CellBlock& block = zone.block;
   block.types.reserve(count);

@@ -19,7 +19,8 @@
 namespace tessera::io {
 namespace {
 
-/// Number of tets for a surface if no largest volume is given. This is some 40 tets across, and takes TetGen a second.
+/// Number of tets for a surface if no largest volume is given. This is about 40 tets across the surface, and takes
+/// TetGen a second.
 constexpr double default_tets = 30000;
 
 std::string text_of(const std::filesystem::path& file) { return std::string(WholeFile(file).text()); }

@@ -73,7 +73,7 @@ scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::siz
   return read;
 }
 
-/// Returns the zones of a step. A strand without a zone at this time contributes its last zone before it.
+/// Returns the zones of a step. A strand without a zone at this time contributes its last zone before this time.
 std::vector<std::size_t> zones_at(const TecplotHeader& header, bool has_steps, double time) {
   std::vector<std::size_t> zones;
   std::map<std::int64_t, double> latest;  // per strand

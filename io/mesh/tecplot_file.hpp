@@ -21,10 +21,10 @@ struct TecplotMesh {
 };
 
 /// Parses a Tecplot text file: ordered zones, bricks, tetrahedra and polyhedra, with values by points or in blocks, at
-/// nodes or cells, shared between zones or not. If zones have different solution times, these are the time steps, by
-/// default the last; zones without a strand belong to all steps. Coordinates are the variables named X, Y and Z, or the
-/// first three. Zones of lines and faces are left out with a note. Throws Error(bad_input) with file, line and remedy.
-/// Memory is proportional to the text.
+/// nodes or cells, shared between zones or not. If zones have different solution times, each of these is a time step,
+/// and the last step is read by default; zones without a strand belong to all steps. Coordinates are the variables
+/// named X, Y and Z, or the first three. Zones of lines and faces are left out with a note. Throws Error(bad_input)
+/// with file, line and remedy. Memory is proportional to the text.
 ///
 /// Source  Tecplot, Inc., "Data Format Guide", chapter "ASCII Data".
 TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std::optional<std::size_t> time_step);

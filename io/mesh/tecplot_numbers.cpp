@@ -101,8 +101,8 @@ std::size_t nodes_an_element(TecplotZoneType type) {
   return type == TecplotZoneType::bricks ? 8 : type == TecplotZoneType::tetrahedra ? 4 : 0;
 }
 
-/// Whether values are packed by points. If the zone has no packing keyword, they are if the first line has a number for
-/// each variable.
+/// Whether values are packed by points. If the zone has no packing keyword, values are packed by points if all are at
+/// nodes and the first line has one number for each variable.
 bool is_by_point(const TecplotZone& zone, const NumberStream& numbers, std::size_t variables) {
   if (zone.by_point) return *zone.by_point;
   return variables != zone.nodes && numbers.on_first_line() == variables &&

@@ -19,8 +19,8 @@ namespace {
 using scene::TraceRole;
 using scene::TraceSpan;
 
-/// Number of the first track of frames. Frames have tracks of their own, because they would not nest with the spans of
-/// a thread.
+/// Number of the first track of frames. Frames have separate tracks, because they would not nest with the spans of a
+/// thread.
 constexpr std::uint32_t frame_track = 1'000'000;
 
 const char* word(TraceRole role) {

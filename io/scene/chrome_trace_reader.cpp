@@ -174,7 +174,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   void finish_event() {
     if (event_.category != "tessera" || event_.phase != "X") return;
-    constexpr double most_us = 1e14, most_count = 9e15;  // three years; exact as a double
+    constexpr double most_us = 1e14, most_count = 9e15;  // most_us is three years; most_count is exact as a double
     FileSpan span;
     span.start_us = checked("ts", event_.start_us, -most_us, most_us, false);
     span.wall_us = checked("dur", event_.wall_us, 0, most_us, false);

@@ -16,8 +16,8 @@ using tessera::TraceFile;
 /// accepts a bare array of events. Parses the file as a stream, without a tree: needs 64 bytes per span, half the size
 /// of the span's text.
 ///
-/// Throws Error(bad_input) if the text is truncated or not JSON, if an event of ours has an invalid time, or if the
-/// text does not contain any span of ours.
+/// Throws Error(bad_input) if the text is truncated or not JSON, if an event of Tessera has an invalid time, or if the
+/// text contains no span of Tessera.
 TraceFile parse_chrome_trace(std::string_view text, const std::string& source);
 TraceFile read_chrome_trace(const std::filesystem::path& file);
 

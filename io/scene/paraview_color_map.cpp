@@ -65,8 +65,8 @@ class MapReader {
     std::vector<colormaps::ColorPoint> points;
     for (std::size_t i = 0; i + 3 < flat.size(); i += 4) {
       const glm::dvec3 color{flat[i + 1], flat[i + 2], flat[i + 3]};
-      // Rounding slightly below 0 or above 1 is common in exported maps and is clamped. Much larger values are bytes,
-      // which is another convention.
+      // Rounding slightly below 0 or above 1 is common in exported maps and is clamped. Values above 2 indicate colours
+      // from 0 to 255 and are refused.
       if (std::max({color.x, color.y, color.z}) > 2)
         throw fault(fmt::format("RGBPoints: point {} has the colour {} {} {}; write components from 0 to 1, not bytes",
                                 i / 4 + 1, color.x, color.y, color.z));
@@ -105,8 +105,8 @@ std::array<double, 2> range_of(const std::vector<Point>& points) {
   return {points.front().value, points.back().value};
 }
 
-/// Maps the range `from` of the points to the range `to`. If the target range is a single value, it gets the colour or
-/// opacity of the middle, because it cannot contain the whole map.
+/// Maps the range `from` of the points to the range `to`. If `to` is a single value, which cannot contain the whole
+/// map, this value gets the colour or opacity at the middle of `from`.
 template <class Point>
 void stretch(std::vector<Point>& points, const std::array<double, 2>& from, const std::array<double, 2>& to,
              auto&& at_middle) {
@@ -218,10 +218,10 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   const std::array<double, 2> spanned = stretches ? options.spanned() : color_range;
   std::vector<std::string> warnings;
   if (off)
-    warnings.push_back(
-        fmt::format("the transfer function's {:g} to {:g} would show almost nothing of the field's {:.6g} to {:.6g}: "
-                    "it is used like a preset and stretched over the field's range; `range` sets another range",
-                    color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
+    warnings.push_back(fmt::format(
+        "the transfer function's range, {:g} to {:g}, would show almost nothing of the field's, {:.6g} to {:.6g}: the "
+        "function is used like a preset and stretched over the field's range; `range` sets another range",
+        color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
   if (stretches) {
     remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
     stretch(curves.colors, color_range, spanned, [&] {

@@ -13,8 +13,8 @@ namespace tessera::io {
 ///
 /// `RGBPoints` [x r g b ...] is sRGB, interpolated in `ColorSpace` (RGB, HSV, Lab, CIELAB, Diverging, Step;
 /// LabCIEDE2000 is treated as Lab, and the name mentions it) and decoded. `Points` [x opacity midpoint sharpness ...]
-/// is opacity per unit distance, with vtkPiecewiseFunction's interpretation of midpoint and sharpness; without it the
-/// default ramp is used, and the name mentions it. `ScalarOpacityUnitDistance`, if present, is the unit distance.
+/// is opacity per unit distance, with vtkPiecewiseFunction's interpretation of midpoint and sharpness; without `Points`
+/// the default ramp is used, and the name mentions it. `ScalarOpacityUnitDistance`, if present, is the unit distance.
 /// `HSVWrap` 1 lets hue wrap through 0.
 /// Values are those of the field; with `rescale`, colours and opacities are each stretched over the field's range, and
 /// the name mentions it. Two points at one x form a step. NaN's colour, annotations and other keys are ignored. Maps

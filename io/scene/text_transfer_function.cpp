@@ -16,8 +16,8 @@ namespace tessera::io {
 
 namespace {
 
-/// Maps sorted knots to the range of the field. A constant field gets the colour and extinction of the knot nearest to
-/// the middle. Returns a remark.
+/// Maps sorted knots to the range `to` of the field. A constant field gets the colour and extinction of the knot
+/// nearest to the middle of the knots' range. Returns a remark.
 std::string rescale(std::vector<scene::Knot>& knots, const std::array<double, 2>& to) {
   const double low = knots.front().value, high = knots.back().value;
   if (to[0] == to[1]) {

@@ -13,8 +13,8 @@ using tessera::is_time_series;
 using tessera::read_time_series;
 using tessera::TimeStep;
 
-/// Throws Error(bad_input) unless the input exists: a file, or at least one step of a time series. Called first,
-/// because for a missing file other errors would mislead, for example that the file is a mesh.
+/// Throws Error(bad_input) unless the input exists: a file, or at least one step of a time series. Must be called
+/// first, because other checks would report misleading errors for a missing file, for example that it is a mesh.
 void require_input(const std::filesystem::path& input);
 
 /// Parses a ParaView file series, {"file-series-version", "files": [{"name", "time"}, ...]}, and sorts the entries by

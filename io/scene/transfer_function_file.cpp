@@ -37,7 +37,7 @@ colormaps::LoadedTransferFunction load_file(const std::string& file,
   }
 }
 
-/// An error that suggests what was probably meant.
+/// Returns the error for a name that is neither a file nor a preset; the error suggests what was probably meant.
 scene::Error neither(const std::string& name) {
   const std::vector<std::string> presets = colormaps::preset_names();
   const std::size_t colon = std::min(name.find(':'), name.size());

@@ -17,7 +17,7 @@ namespace tessera::io {
 using tessera::printable;
 
 /// Runs `work`, which reads a file, and cleans its errors. The message becomes one printable line, whatever it quotes
-/// from the file; if it begins with `source`, that remains the subject. Running out of memory becomes
+/// from the file; if the message begins with `source`, `source` remains its subject. Running out of memory becomes
 /// Error(system_failure).
 template <class Work>
 auto with_clean_errors(const std::string& source, const Work& work) {

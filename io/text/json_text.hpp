@@ -25,7 +25,7 @@ inline bool is_json_text(std::string_view file_or_json) {
 }
 
 /// Returns the error of parse_json() for a stream parser: `byte` is the position in the text, counted from 1, and
-/// `message` that of the parser.
+/// `message` is the parser's message.
 scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message);
 
 }  // namespace tessera::io

@@ -25,10 +25,10 @@ std::size_t line_number(std::string_view text, std::size_t at);
 /// Result of TextScanner::number().
 enum class Scanned : std::uint8_t { number, nothing, other_word, out_of_range };
 
-/// Reads words and numbers that `blanks` separate: line by line with next_line(), or through the whole text, where line
-/// ends separate words, too, if `blanks` contains them. The character `comment` begins a comment, which is skipped; 0:
-/// there are no comments. A UTF-8 byte order mark at the beginning is skipped. Text and source must outlive the scanner
-/// and the words that it returns.
+/// Reads words and numbers that the characters `blanks` separate. Reads either line by line, with next_line(), or
+/// through the whole text; in the second case, `blanks` must contain the line ends if these separate words. The
+/// character `comment` begins a comment, which is skipped; 0: there are no comments. A UTF-8 byte order mark at the
+/// beginning is skipped. Text and source must outlive the scanner and the words that it returns.
 class TextScanner {
  public:
   TextScanner(std::string_view text, const std::string& source, std::string_view blanks = ascii_blanks,

@@ -14,8 +14,8 @@
 
 namespace tessera::io {
 
-/// A brick file (.bricks): a volume cut into contiguous blocks, each with its range, so that a volume larger than
-/// memory is read on demand and invisible blocks are never read.
+/// A brick file (.bricks): a volume cut into contiguous blocks, each stored with the range of its values, so that a
+/// volume larger than memory is read on demand and invisible blocks are never read.
 ///
 ///   bytes 0..7     "TESSBRK1"
 ///   bytes 8..15    uint64 length H of the header

@@ -27,7 +27,7 @@ struct BlockRange {
 };
 static_assert(sizeof(BlockRange) == 24);
 
-/// The blocks into which a volume is divided. Positions of their samples are counted in samples.
+/// The blocks into which a volume is divided. Positions of samples in the file are counted in samples, not in bytes.
 class Blocks {
  public:
   Blocks(const scene::GridIndex& samples, std::int64_t side);

@@ -104,7 +104,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
           glm::dvec3(m[axes * axis], m[axes * axis + 1], m[axes * axis + 2]) * spacing[static_cast<int>(axis)];
   }
   scene::set_axes(g, steps);
-  // ITK writes it for every image, in a world of left, posterior and superior.
+  // ITK writes this key for every image; the axes of the world are then left, posterior and superior.
   if (const auto* value = header.find({"AnatomicalOrientation"}); value && value->find('?') == std::string::npos)
     volume.body_axes = BodyAxes::lps;
   if (const auto* value = header.find({"Offset", "Position", "Origin"})) {

@@ -202,7 +202,7 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
     volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
   if (dimensions >= 4) volume.steps = static_cast<std::uint64_t>(header.dim(4));
   if (dimensions < 5 || header.dim(5) == 1) return;
-  // In the file, the components of a sample are further apart than its steps.
+  // NIfTI stores all steps of a component before the next component; volumes with both are not supported.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
     throw scene::bad_input(
         fmt::format("{}: dimension 5 has {} components and dimension 4 has {} time steps; write only one of the two, "
@@ -240,7 +240,7 @@ std::filesystem::path image_of_header(const std::filesystem::path& header) {
                   stem.filename().string()));
 }
 
-/// x.hdr for x.img; any other name is the header itself.
+/// Returns the header's name: x.hdr for x.img; any other file is the header itself.
 std::filesystem::path header_of_image(const std::filesystem::path& file) {
   std::filesystem::path stem = file;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();
@@ -261,7 +261,7 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
                        StoredVolume& volume) {
   const double offset = header.vox_offset();
   if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
-  // In a single file the samples cannot be inside the header; old writers stored 0.
+  // If one file contains header and samples, the samples begin after the header, even if old writers stored 0.
   const double least =
       header.separate() ? 0 : static_cast<double>(header.version() == 1 ? header_size_1 : header_size_2) + 4;
   volume.offset = static_cast<std::uint64_t>(std::max(offset, least));

@@ -155,8 +155,8 @@ NrrdSpace space_of(const std::string& field) {
           .note = fmt::format("its space, {}, is converted to right-anterior-superior", field)};
 }
 
-/// Positions along one axis, from the fields that have a value per axis. If samples are cell centers, the first is half
-/// a step further inside.
+/// Positions along one axis, from the fields that have a value per axis. If samples are cell centers, the first sample
+/// is half a step inside of the axis minimum.
 struct AxisPlaces {
   double spacing = 1, first = 0;
 };

@@ -28,14 +28,14 @@ struct NrrdAxes {
 
 /// Determines the roles from `space directions`, in which only spatial axes have a direction, otherwise from the words
 /// of `kinds`. Without either, the first of four axes contains components if it is short, otherwise the last contains
-/// time steps; of five axes, the first contains components and the last time steps. A list, and the fourth axis of a
-/// four-dimensional space as ITK writes it, contain time steps. Throws Error(bad_input).
+/// time steps; of five axes, the first contains components and the last time steps. An axis of kind `list`, and the
+/// fourth axis of a four-dimensional space as ITK writes it, contain time steps. Throws Error(bad_input).
 NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes,
                       const std::filesystem::path& file);
 
 /// Returns the times of the steps, if the header states spacings or both ends of their axis, or a direction along the
-/// fourth dimension of a space with `-time` (whose origin is the fourth number of `space origin`). Otherwise, and for
-/// lists, the result is empty.
+/// fourth dimension of a space with `-time` (the fourth number of `space origin` is then the first time). Otherwise,
+/// and for lists, the result is empty.
 std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,
                                const std::filesystem::path& file);
 

@@ -172,7 +172,7 @@ StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
   if (lines)
     volume.offset = after_lines(volume.payload, volume.offset, header_count(*lines, 0, 1 << 20, file, "line skip"));
   if (const auto* bytes = fields.find("byteskip")) {
-    // Lines are skipped before a gzip stream begins, bytes after inflating it.
+    // Lines are skipped before the gzip stream begins; bytes are skipped in the inflated data.
     if (*bytes == "-1")
       volume.at_end = true;
     else

@@ -22,10 +22,10 @@ struct StoredVolume {
   bool planar = false;                        ///< components are stored one after the other, not interleaved
   std::uint64_t steps = 1;                    ///< number of volumes in the payload, one after the other
   std::vector<double> times{};                ///< times of all steps, if the header states them; otherwise empty
-  bool interleaved_steps = false;             ///< each sample has its steps in sequence; one component
+  bool interleaved_steps = false;             ///< the steps of each sample are adjacent; there is one component
   bool swapped = false;                       ///< the byte order is not native
-  std::filesystem::path payload;              ///< the file itself, or another
-  std::uint64_t payload_size = 0;             ///< size in bytes of the file itself; 0 if the payload is another file
+  std::filesystem::path payload;              ///< file that contains the samples: the opened file or another one
+  std::uint64_t payload_size = 0;             ///< size in bytes of the payload if it is the opened file; else 0
   std::vector<std::filesystem::path> slices;  ///< instead of one payload file: files with equal shares, in order
   std::uint64_t offset = 0;                   ///< position of the payload in the file, or of each share in its file
   bool at_end = false;                        ///< instead of an offset: the payload is at the end of the file
@@ -57,10 +57,10 @@ struct StoredVolume {
   VolumeTags tags{};
 };
 
-/// Opens one array of samples: determines its fields, the chosen one, and the source.
+/// Opens one array of samples: determines its fields, the chosen field, and the source.
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source);
 
-/// Throws Error(bad_input) for a file that only its name identifies.
+/// Throws Error(bad_input) if only the name of a file, not its first bytes, identifies the format.
 void require_recognized(const InputFile& file);
 
 VolumeFile with_tag_note(VolumeFile volume);

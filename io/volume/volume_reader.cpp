@@ -115,8 +115,8 @@ std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, Cho
 /// Inflates only the part of a gzip file that contains the samples if the header determines it, otherwise the whole
 /// file.
 InflatedFile inflated_as_needed(const InputFile& file, bool is_raw) {
-  // A file whose first bytes are the whole file may be truncated within its header; inflating the whole file reports
-  // that.
+  // If `beginning` contains the whole file, the file may be truncated within its header; inflating the whole file
+  // reports that.
   const bool is_known_whole =
       file.size <= InputFile::longest_beginning && file.beginning.size() < InputFile::longest_beginning;
   const auto end_of_samples = is_raw || !file.is_recognized || is_known_whole ? nullptr : file.format->end_of_samples;
@@ -234,8 +234,8 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
                                        file.string(), volume.source->geometry().all_samples().count()));
   for (cells::FieldSummary& field : volume.fields)
     if (field.low > field.high) list_range(range, field);
-  // The axes apply if the values are Hounsfield units, which include air and the fill values of scanners, but not
-  // -9999.
+  // The axes apply if the range is that of Hounsfield units: the lowest value is that of air or a fill value of
+  // scanners, down to -4096. A fill value of -9999 is not accepted.
   if (const BodyAxes axes = std::exchange(volume.axes_if_ct, BodyAxes::none);
       axes != BodyAxes::none && range.low <= -900 && range.low >= -4096 && range.high >= 200)
     volume.body_axes = axes;

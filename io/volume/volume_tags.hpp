@@ -10,7 +10,7 @@
 
 namespace tessera::io {
 
-/// Metadata in a header about the values and the world, other than numbers. `convert` preserves them.
+/// Non-numeric metadata in a header about the values and the world coordinates. `convert` preserves them.
 struct VolumeTags {
   std::string modality;     ///< DICOM's code: CT, MR, PT ...; empty: not stated
   std::string unit;         ///< unit of the values; empty: not stated

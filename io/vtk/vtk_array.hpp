@@ -21,11 +21,12 @@ namespace tessera::io {
 
 /// Location and encoding of a binary array of a VTK XML file.
 ///
-/// raw         u32 or u64 number of bytes, bytes
-/// base64      the same as text, four characters for three bytes; padding (=) may end the text of the number and that
-///             of the bytes
-/// compressed  as u32 or u64: n blocks, bytes of one, bytes of the last if it is shorter, else 0, packed bytes of each;
-///             then the blocks (VtkCodec). In base64 the numbers are a separate text.
+/// raw         the number of bytes as u32 or u64, then the bytes
+/// base64      the same as text, four characters for three bytes; padding (=) may end both the text of the number and
+///             the text of the bytes
+/// compressed  as u32 or u64: the number of blocks, the size of a block, the size of the last block if it is smaller
+///             (otherwise 0), and the packed size of each block; then the blocks (VtkCodec). In base64, these numbers
+///             are a separate text.
 ///
 /// Source: VTK File Formats, "XML File Formats", and the output of VTK's writers (vtkXMLWriter.cxx).
 struct VtkArrayPlace {

@@ -9,8 +9,8 @@
 
 namespace tessera::io {
 
-/// The compression of blocks in a VTK XML file's arrays: each is a zlib stream, an LZ4 block without a frame, or an xz
-/// stream.
+/// The compression of blocks in a VTK XML file's arrays: each block is a zlib stream, an LZ4 block without a frame, or
+/// an xz stream.
 enum class VtkCodec : std::uint8_t { none, zlib, lz4, lzma };
 
 /// Returns the codec that a file's attribute `compressor` names: VtkCodec::none if the attribute is empty, no value if

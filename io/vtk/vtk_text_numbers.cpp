@@ -94,7 +94,7 @@ bool VtkTextNumbers::read_number(T& number) {
 
 std::string VtkTextNumbers::next_word() const {
   constexpr std::size_t most = 24;
-  std::size_t first = used_;  // if 1.5 is read as an integer, the 1 was consumed
+  std::size_t first = used_;  // if 1.5 was read as an integer, its 1 has been consumed
   while (first > 0 && !is_blank(text_[first - 1])) --first;
   const std::string word = text_.substr(first, most);
   return word.substr(0, static_cast<std::size_t>(std::ranges::find_if(word, is_blank) - word.begin()));

@@ -48,7 +48,8 @@ class VtkXmlArrays final : public ArraySource {
   std::map<std::uint64_t, std::shared_ptr<const Stream>> held_;
   std::uint64_t next_ = 0;
   ReadProgressFunction progress_;
-  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;  ///< bytes of stream(), without fields that are read later
+  /// Bytes that stream() is expected to pass, and bytes passed so far, without fields that are read later.
+  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;
 };
 
 }  // namespace tessera::io

@@ -29,8 +29,8 @@ const VtkXmlArray& points_of(const VtkXmlOpened& of, std::size_t piece) {
   return arrays[0];
 }
 
-/// Throws if `bytes` of coordinates or corners cannot come from a file of this size, before memory is allocated. Those
-/// of meshes compress by a factor of 2 to 50.
+/// Throws if `bytes` of coordinates or corners cannot come from a file of this size, before memory is allocated. The
+/// coordinates and corners of real meshes compress by a factor of 2 to 50.
 void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char* what) {
   constexpr std::uint64_t always = 64 << 20, times = 128;
   if (const std::uint64_t size = of.file->size(); bytes > always && (bytes - always) / times > size)
@@ -132,7 +132,7 @@ bool set_grid(VtkXmlGrid& grid, ForeignPart& part) {
     piece.points *= static_cast<std::uint64_t>(high - low + 1);
     piece.cells *= static_cast<std::uint64_t>(high - low);
   }
-  // The file of a grid without fields has a few bytes, whatever the size of the grid.
+  // Without fields, a grid of any size has a file of a few bytes, so the size of the file would not limit the grid.
   if (piece.point_fields.arrays.empty() && piece.cell_fields.arrays.empty()) return false;
   if (grid.element.name != "ImageData") return true;
   part.kind = ForeignPart::Kind::image;

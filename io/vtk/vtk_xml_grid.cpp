@@ -163,7 +163,7 @@ class GridElements {
     if (list_ != nullptr) list_->clear();
   }
 
-  /// VTK's reader stops at arrays without a name.
+  /// Names arrays that have no name, because VTK's reader stops at them. Throws Unknown if two arrays have one name.
   static void name_all(VtkXmlFields& fields) {
     std::set<std::string> names;
     std::size_t number = 0;

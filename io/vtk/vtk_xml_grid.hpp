@@ -17,7 +17,9 @@ struct VtkXmlArray {
   std::string name;                ///< `array NUMBER`, counted from 1, if the file does not name the array
   std::optional<NumberType> type;  ///< type of the numbers; no value for text and for tuples without components
   int components = 1;
-  bool are_bits = false;  ///< eight bits to a byte, the first in the highest bit, except in text; other code uses uint8
+  /// Numbers of one bit. A byte of the file contains eight of them, the first in the highest bit (except in ascii
+  /// arrays). Other code uses one uint8 per number.
+  bool are_bits = false;
   bool ascii = false;
   VtkArrayPlace place{};  ///< for ascii numbers only the first byte and the end are set
 
@@ -58,7 +60,7 @@ struct VtkXmlGrid {
 /// another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source);
 
-/// Returns the name of a number type in VTK XML files. The second function is the inverse.
+/// Returns the name of a number type in VTK XML files. vtk_xml_number_type() is the inverse.
 const char* vtk_xml_type_name(NumberType type);
 std::optional<NumberType> vtk_xml_number_type(const std::string& name);
 

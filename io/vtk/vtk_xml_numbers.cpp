@@ -15,11 +15,11 @@
 namespace tessera::io {
 namespace {
 
-/// Number of bytes that are read at once: many of VTK's blocks (32 KiB), within the cache. If blocks are larger,
-/// several are read, one per thread, up to a limit.
+/// At least bytes_at_once bytes are read at once: many of VTK's blocks (32 KiB), but within the processor's cache. If
+/// blocks are larger, blocks_at_once blocks are read at once, one per thread, but at most most_at_once bytes.
 constexpr std::size_t bytes_at_once = 1 << 20, most_at_once = 16 << 20, blocks_at_once = 4;
 
-/// Reads the numbers of an array sequentially, in either encoding.
+/// Reads the numbers of an ascii or binary array sequentially.
 class Numbers {
  public:
   /// Opens an array. No value if it is damaged.
@@ -116,8 +116,8 @@ void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& seg
                                            source, scene::quote(segment.array.name), scene::quote(word),
                                            scene::listed_name(*segment.array.type)));
       throw scene::bad_input(
-          fmt::format("{}: its array {} cannot be read beyond a point between its numbers {} and {} of {}; the file is "
-                      "truncated or damaged, export it again",
+          fmt::format("{}: its array {} becomes unreadable between its numbers {} and {} of {}; the file is truncated "
+                      "or damaged, export it again",
                       source, scene::quote(segment.array.name), done, done + now, segment.numbers));
     }
     use(std::span(part).first(now * each));

@@ -19,7 +19,7 @@ namespace tessera::io {
 namespace {
 
 constexpr std::uint8_t tetrahedron = vtk_number(CellType::tetra);
-/// VTK's type numbers of hexahedra of any order: its oldest (67), Lagrange and Bezier.
+/// VTK's type numbers of hexahedra of arbitrary order: the oldest type (67), Lagrange and Bezier.
 constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, vtk_number(CellType::lagrange_hexahedron),
                                                                 vtk_number(CellType::bezier_hexahedron)};
 

@@ -30,7 +30,7 @@ VtuCells read_vtu_cells(const system::PositionalFile& file, const VtkXmlGrid& gr
 const VtkXmlArray& topology_of(const VtkXmlGrid& grid, std::size_t piece, const char* name, const std::string& source);
 
 /// Returns the number of a point in the whole file, given its number in a piece whose points begin at `first`; the
-/// largest number if `in_piece` is invalid.
+/// largest uint32 if `in_piece` is invalid.
 inline std::uint32_t point_number(std::int64_t in_piece, std::uint64_t first) {
   const std::uint64_t number = static_cast<std::uint64_t>(in_piece) + first;
   return in_piece < 0 || number > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(number);

@@ -14,7 +14,7 @@
 namespace tessera::projection {
 
 /// Rasterizes cells to ray segments on a device, by compute shaders (the outlook of Juliachs et al. 2007, section 6). A
-/// first pass counts the segments of every pixel; a second pass writes them into lists of this length.
+/// first pass counts the segments of every pixel; a second pass writes them into lists of these lengths.
 ///
 /// The segments are those of rasterize_planes(): six edge functions determine the two faces that a ray passes, with
 /// exact signs and the tie rule (edge_sign.hpp); where a double does not give a certain sign, 128-bit integers do.
@@ -45,7 +45,7 @@ class GlRasterizer {
   struct Lists {
     const gl::Buffer* next;    ///< one uint per pixel: the first free element of the pixel's list
     const gl::Buffer* keys;    ///< four uints: keys of front and back, the low half of the tet, the element
-    const gl::Buffer* values;  ///< four floats: length, and scalars at front and back, in the jobs' units; -1
+    const gl::Buffer* values;  ///< four floats: length, scalars at front and back (in the jobs' units), and -1
     const gl::Buffer*
         scalars;  ///< two floats: the scalars again, which are still needed after light has replaced the values
   };

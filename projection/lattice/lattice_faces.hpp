@@ -14,17 +14,17 @@
 namespace tessera::projection {
 
 /// The points where the rays of a rectangle meet triangle surfaces, with depths in steps of the lattice. Marks of one
-/// ray at one step are sorted like segments, by their numbers; if FaceMarks has another order there, the marks that
-/// follow are moved to the next step.
+/// ray at one step are sorted by their numbers, as segments are; if FaceMarks has another order for these marks, the
+/// later marks are moved to the next step.
 ///
-/// A mark becomes a segment of length zero (surface_crossings.hpp), and the rasterizer's segments are cut there
-/// (lattice_faces-inl.h). Segments in front of a mark end at its step and segments behind it begin there: the order of
-/// segments, by front and then by back, puts the mark between them.
+/// A mark becomes a segment of length zero (surface_crossings.hpp), and the rasterizer's segments are cut at the mark
+/// (lattice_faces-inl.h). Segments in front of a mark end at its step and segments behind it begin at its step: the
+/// order of segments, by front and then by back, puts the mark between them.
 class LatticeFaces {
  public:
-  /// A mark within this number of steps behind a segment's front, or before its back, is taken to be there: depths of
-  /// planes have errors of up to 16 steps, and the depths of marks of one. (Perspective divides in floats, whose larger
-  /// errors DepthLimits bounds.)
+  /// If a mark is within this number of steps behind a segment's front, or before its back, the front or back is moved
+  /// to the mark: depths of planes have errors of up to 16 steps, and depths of marks have errors of up to one step.
+  /// (Perspective divides in floats, whose larger errors DepthLimits bounds.)
   static constexpr std::int32_t reach = 18;
 
   /// Takes the sorted marks of a rectangle. `steps` are those of the transfer function.

@@ -49,7 +49,7 @@ struct LatticeScratch {
   SplitRasterizer<RaySegments> splitter;  ///< rasterizes irregular cells, in double precision
 };
 
-/// Bit x of rows[y] is set if pixel (x, y) of the square still accepts segments.
+/// Bit x of element y is set if pixel (x, y) of the square still accepts segments.
 using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 
 /// The pixels to rasterize: a rectangle in one square of 32 x 32 pixels aligned to multiples of 32, which of its pixels
@@ -76,18 +76,18 @@ struct ListedCells {
 /// Appends to `out`.
 ///
 /// Sixteen cells are set up at once, one cell per lane, in double precision. Two steps follow:
-///   1. Which pixels does each cell cover (lattice_cover-inl.h)? The edges of the cell's outline determine this: four
-///      additions for a vector of pixels, in blocks of 4 x 4, 8 x 2 or 2 x 8 (AVX-512; otherwise half or a quarter as
-///      many pixels), with the shape that takes the fewest blocks. Cells of a few pixels (AVX-512, AVX2) are processed
-///      together, one cell per lane. Less than half of the lanes are hits (in blocks, 43 % on cube 32, 40 % on cube
-///      64). Hits are packed: cell, column and row in one integer each.
+///   1. Which pixels does each cell cover (lattice_cover-inl.h)? The edges of the cell's outline determine this, with
+///      four additions per vector of pixels. A vector is a block of 4 x 4, 8 x 2 or 2 x 8 pixels (AVX-512; otherwise
+///      half or a quarter as many pixels); the shape that takes the fewest blocks is used. Cells of a few pixels
+///      (AVX-512, AVX2) are processed together, one cell per lane. Less than half of the lanes are hits (43 % on cube
+///      32 and 40 % on cube 64, in blocks). Hits are packed: cell, column and row in one integer each.
 ///   2. Where do the rays of the hits pass through the cell (lattice_cross-inl.h)? This is computed with one hit per
-///      lane. With AVX-512, sixteen hits may belong to any of the sixteen cells: a value of all cells is then one
-///      vector, from which lanes take the value of their cell by permuting. The same holds for eight hits of eight
-///      cells of a few pixels with AVX2. Otherwise, all hits of a vector belong to one cell.
-/// (When both steps were one, a block of pixels with all its planes, it took 97 instructions for the 6 hits of 16
-/// pixels that cube 64 has on average, and almost as much time before a cell's first block. Now a block takes 29
-/// instructions, and sixteen hits of small cells take 138.)
+///      lane. With AVX-512, the sixteen hits of a vector may belong to any of the sixteen cells: a property of all
+///      cells is one vector, and a permutation gives each lane the value of its cell. With AVX2, the same holds for
+///      eight hits of eight cells of a few pixels. Otherwise, all hits of a vector belong to one cell.
+/// (A single step that computes all planes for every pixel of a block takes 97 instructions per block of 16 pixels,
+/// which has 6 hits on average on cube 64, and almost as much time before a cell's first block. With two steps, a block
+/// takes 29 instructions, and sixteen hits of small cells take 138.)
 ///
 /// Six edge functions E in float determine which pixels are hit, and through which faces. Seen from the eye, a cell has
 /// two front and two back faces, or one and three. The silhouette's edges determine whether a pixel is hit; the inner
@@ -104,11 +104,11 @@ struct ListedCells {
 /// cell).
 ///
 /// Irregular cells are rasterized by rasterize_planes. These are cells that cross the eye plane or the clipping range,
-/// have a corner nearer than a 16th of another corner's distance from the eye, have a face edge-on to 2^-9 of a pixel
-/// (except faces of orthographic views that are certainly edge-on), or extend beyond 2^14 pixels. Cells are also
-/// irregular if integer planes and float quotients are not accurate enough for them: DepthLimits determines which cells
-/// are too thin, CellsAtSteps which are too close to steps of the transfer function. The depths of irregular cells
-/// differ from their neighbours' by a few steps, and none of their segments crosses a step.
+/// have a corner nearer than a 16th of another corner's distance from the eye, have a face that is edge-on within 2^-9
+/// of a pixel (except faces of orthographic views that are certainly edge-on), or extend beyond 2^14 pixels. Cells are
+/// also irregular if integer planes and float quotients are not accurate enough for them: DepthLimits determines which
+/// cells are too thin, CellsAtSteps which are too close to steps of the transfer function. The depths of irregular
+/// cells differ from their neighbours' by a few steps, and none of their segments crosses a step.
 ///
 /// Cells whose candidate pixels are all closed are skipped; otherwise, closed pixels still get segments.
 void rasterize_lattice(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels,

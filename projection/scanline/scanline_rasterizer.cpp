@@ -58,10 +58,10 @@ struct Cell {
   scene::PixelRect box;  ///< the pixels inside the rectangle that the cell may cover
   float nearest;         ///< depth of its nearest vertex
   float near_clip, far_clip;
-  bool clipped;  ///< whether the cell extends beyond one of these
+  bool clipped;  ///< whether the cell extends beyond near_clip or far_clip
   float longest_edge;
   std::uint32_t tet;
-  std::int32_t owner;  ///< the cell's number as an owner in B
+  std::int32_t owner;  ///< the cell's number in ScanlineBuffers::owner
 };
 
 /// Returns the first row (or pixel) of [low, high] whose centre is not before `position`.

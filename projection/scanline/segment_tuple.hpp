@@ -24,9 +24,9 @@ struct SegmentDepths {
 };
 SegmentDepths depths_of(float z_back, float length, float longest_edge);
 
-/// Returns the tuple of segment i from a rasterize_scanline() with this longest edge: exactly the four floats that it
-/// computed. (Front and back determine these floats because a length is a difference of two float depths, which is zero
-/// or at least 2^-25 of the depth, while double rounds by 2^-53.)
+/// Returns the tuple of segment i, exactly the four floats that rasterize_scanline() computed with this longest edge.
+/// (Front and back determine these floats because a length is a difference of two float depths, which is zero or at
+/// least 2^-25 of the depth, while double rounds by 2^-53.)
 SegmentTuple to_tuple(const RaySegments& segments, std::size_t i, float longest_edge);
 
 /// Writes the tuple as segment i, which must exist. This is the inverse of to_tuple().

@@ -58,7 +58,8 @@ class References {
       waiting_.pop_back();
       if (seen_.insert(file).second) visit(file);
     }
-    // Done last, when all files that are opened on the path to a source have been checked.
+    // This loop comes last, because is_virtual_in() opens the files on the path to a source, which must be checked
+    // first.
     for (const auto& [file, sources] : sources_)
       for (const auto& [in_file, dataset] : sources)
         if (is_virtual_in(in_file, dataset)) leads_[file].insert(in_file);

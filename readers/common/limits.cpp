@@ -46,7 +46,7 @@ bool may_be_compressed(const std::filesystem::path& file) {
          beginning.starts_with("\x1f\x8b");
 }
 
-/// Allows more memory and time than are in use.
+/// Sets the limits to what the process has used so far plus `bytes` and `seconds`.
 void allow(std::uint64_t bytes, double seconds) {
   // Sanitizers reserve most of the address space.
   if (!is_sanitized) had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + bytes);
@@ -71,7 +71,8 @@ void allow_for_bytes(std::uint64_t size, bool is_compressed) {
 
 void allow_for(const std::filesystem::path& file) {
   if (!io::is_inflated(file)) return allow_for_bytes(io::require_file(file), may_be_compressed(file));
-  // The limit is that for the content, but the total is at most that for a compressed file of the same size.
+  // The limit is that of a file with this content. Together with the content, it is at most the limit of a compressed
+  // file of the packed size, but it is at least twice the content.
   const double held = static_cast<double>(io::require_file(file)), packed = static_cast<double>(io::packed_size(file));
   const double bytes = std::max(std::min(text_factor * held, packed_factor * packed - held), 2 * held);
   allow(base_bytes + static_cast<std::uint64_t>(bytes), base_seconds + held / text_bytes_a_second);
@@ -101,9 +102,9 @@ void allow_for_folder(const std::filesystem::path& folder, bool is_compressed) {
 }
 
 void allow_filling(std::size_t facets, double tets, bool is_chosen) {
-  // Measured on spheres: at most 6 KiB per facet; 0.2 ms per facet up to 330,000 facets, over 0.6 ms at 10^6; 1 KiB and
-  // 0.02 ms per tet. A damaged surface may have slivers that use any amount. The limit is therefore twice the amount
-  // that sound surfaces need plus 256 MiB.
+  // Measured on spheres: each facet takes at most 6 KiB, and 0.2 ms up to 330,000 facets, but over 0.6 ms at 10^6
+  // facets; each tet takes 1 KiB and 0.02 ms. A damaged surface may have slivers that take any amount of memory and
+  // time. The limit is therefore twice the amount that sound surfaces need plus 256 MiB.
   constexpr double base = 256 << 20;
   const double bytes = base + 12288.0 * static_cast<double>(facets), seconds = 15 + 4e-3 * static_cast<double>(facets);
   if (!is_chosen) return allow(static_cast<std::uint64_t>(bytes), seconds);

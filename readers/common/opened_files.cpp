@@ -50,7 +50,7 @@ int open_noted(const char* name, int flags, mode_t mode) {
 int open_at_noted(int folder, const char* name, int flags, mode_t mode) {
   static auto* const open = c_library<int(int, const char*, int, ...)>("openat64");
   const int descriptor = open(folder, name, flags, mode);
-  if (folder == AT_FDCWD || *name == '/') note(descriptor, name);  // listings open entries by descriptor
+  if (folder == AT_FDCWD || *name == '/') note(descriptor, name);  // other calls come from directory listings
   return descriptor;
 }
 

@@ -96,11 +96,11 @@ void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = 
 /// higher if the user chose that number.
 void allow_filling(std::size_t facets, double tets, bool is_chosen);
 
-/// Returns the error if memory runs out. If the process had as much memory as the size of the file can explain, the
-/// file's counts may be wrong; otherwise the machine is too small.
+/// Returns the error if memory runs out. If the process had as much memory as a sound file of this size can need, the
+/// file's counts may be wrong; otherwise the machine has too little memory.
 scene::Error memory_error(const std::string& source,
                           std::string_view damage =
                               "it requires more memory than a file of its size can need, so its counts may be wrong; "
-                              "have it written again, or in another format");
+                              "write the file again, or in another format");
 
 }  // namespace tessera::readers

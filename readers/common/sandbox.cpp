@@ -160,7 +160,7 @@ void give_up_rights(MayFork may_fork) {
   opens(SYS_open, 1);
 #endif
   opens(SYS_openat, 2);
-  // The flags of these calls are in memory, which a filter cannot read. The C library works without these calls.
+  // The flags of clone3 and openat2 are in memory, which a filter cannot read. The C library works without these calls.
 #ifdef SYS_clone3
   filter.result_if_equal(SYS_clone3, unknown_call);
 #endif

@@ -135,7 +135,7 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
     reply = error_json(memory_error(source));
   } catch (const std::exception&) {
     reply = error_json(
-        scene::bad_input(fmt::format("{}: it cannot be read; have it written again, or in another format", source)));
+        scene::bad_input(fmt::format("{}: it cannot be read; write the file again, or in another format", source)));
   }
   const auto add = [&](const char* key, const std::vector<std::string>& names) {
     for (const std::string& name : names)

@@ -89,7 +89,7 @@ FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   add_measures(data, facts);
   if (const auto axes = orientation_in(data)) facts.frame.row = (*axes)[0], facts.frame.column = (*axes)[1];
   if (const auto position = position_in(data)) facts.frame.position = *position;
-  // In nuclear medicine, the item of a detector contains both.
+  // In nuclear medicine, the item of a detector contains both orientation and position.
   for (const gdcm::DataSet& detector : dicom_items(data, 0x0054, 0x0022)) {
     if (const auto axes = orientation_in(detector)) facts.frame.row = (*axes)[0], facts.frame.column = (*axes)[1];
     if (const auto position = position_in(detector)) facts.frame.position = *position;

@@ -88,7 +88,7 @@ NumberType type_of(const DicomValues& values) {
 /// The samples of the slices' files, each file once.
 struct DicomStack {
   std::vector<DicomSlice> slices;
-  std::vector<std::shared_ptr<const DicomSamples>> samples;  ///< per slice; may contain frames of others
+  std::vector<std::shared_ptr<const DicomSamples>> samples;  ///< one per slice; may include frames of other slices
 };
 
 /// Holds samples as stored; they are converted to values on demand.

@@ -67,7 +67,7 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
   if (groups.size() > 1)
     notes.push_back(
         fmt::format("there are slices of {} different series, sizes, spacings or directions; only the {} slices of one "
-                    "are shown; name a file of another to show its slices",
+                    "group are shown; name a file of another group to show its slices",
                     groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
   return std::move(*chosen);
 }
@@ -205,8 +205,8 @@ std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const 
     const double steps = k > 0 ? std::round(gap(k) / step) : 1;
     if (static_cast<double>(filled.size()) + steps > most_slices)
       throw scene::bad_input(
-          fmt::format("{}: its frames are up to {:.4g} mm apart in steps of {:.4g} mm, more than "
-                      "{:.0f} slices; correct their positions",
+          fmt::format("{}: it has gaps of up to {:.4g} mm between frames, which in steps of {:.4g} mm would be more "
+                      "than {:.0f} slices; correct the positions of its frames",
                       source, gap(k), step, most_slices));
     const glm::dvec3 before = k > 0 ? slices[k - 1].position : slices[k].position;
     for (int n = 1; n < steps; ++n) {

@@ -33,8 +33,8 @@ constexpr const char* write_again = "the file is truncated or damaged, write it 
 DicomTime time_of(const gdcm::DataSet& data) {
   if (const auto index = dicom_number(data, 0x0020, 0x0100)) return {*index, 0};  // temporal position identifier
   if (const auto trigger = dicom_number(data, 0x0018, 0x1060))
-    return {*trigger, 1e-3};                              // of the heart, in milliseconds
-  for (const std::uint16_t element : {0x0022, 0x0023}) {  // acquisition and content dates; their times are 10 further
+    return {*trigger, 1e-3};                              // time since the heartbeat, in milliseconds
+  for (const std::uint16_t element : {0x0022, 0x0023}) {  // dates (acquisition, content); element + 0x10 is the time
     const std::string date = dicom_text(data, 0x0008, element);
     if (const std::string clock = dicom_text(data, 0x0008, static_cast<std::uint16_t>(element + 0x10)); !clock.empty())
       if (const auto moment = dicom_moment(date + clock); moment && date.size() == 8) return {*moment, 1};
@@ -155,7 +155,7 @@ glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, co
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   gdcm::Trace::WarningOff(), gdcm::Trace::ErrorOff(), gdcm::Trace::DebugOff();
   try {
-    if (is_deflated(file))  // GDCM aborts for these, or returns wrong samples if they end early
+    if (is_deflated(file))  // GDCM aborts for deflated files, or returns wrong samples if these are truncated
       throw scene::bad_input(fmt::format(
           "{}: its data set is deflated, which is not supported; convert it with dcmtk: dcmconv +te", file.string()));
     std::ifstream in(file, std::ios::binary);

@@ -53,7 +53,7 @@ struct DicomSlice {
   int bits = 8;                   ///< bits per sample, including unused bits
   bool has_position = false;      ///< if false, the slice's number in the series determines the position
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
-  glm::dvec3 spacing{1};            ///< between columns, rows and slices (from frames, or the slice thickness)
+  glm::dvec3 spacing{1};            ///< distances of columns, rows and slices (from frames, or the thickness)
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
   std::int64_t number = 0;          ///< number of the slice in the series
   DicomTime time{};                 ///< distinguishes slices at one position; 0 if the file has no suitable value
@@ -64,7 +64,8 @@ struct DicomSlice {
   std::optional<std::array<double, 2>> padding{};
   DicomSegments segments{};
   /// The slice combines the frames of several segments: a value is the number of the last segment whose frame is not 0
-  /// at the sample, or 0. Where segments overlap, this is the largest number. For fractions, one frame has the values.
+  /// at the sample, or 0. Where segments overlap, this is the largest number. In a FRACTIONAL segmentation, the slice
+  /// has one frame with the values.
   bool joins_frames = false;
   std::vector<DicomFrameOfSegment> joined{};
 

@@ -185,7 +185,7 @@ class Blocks {
     block.fields.push_back(cells::field_of_values(name, "int32", Association::cell, 1, std::move(numbers)));
   }
 
-  /// Returns the index in a view of an element's value. The view may use any of the numbers under which the file lists
+  /// Returns the index of an element's value in a view. The view may use any of the numbers under which the file lists
   /// the element.
   [[nodiscard]] std::size_t place_in(const GmshView& view, std::size_t tag) const {
     const std::size_t at = view.places.find(tag);

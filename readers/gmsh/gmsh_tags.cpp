@@ -79,9 +79,9 @@ struct ElementList {
   bool is_binary, is_swapped;
 };
 
-/// Parses runs of elements of one type: 32-bit numbers in the byte order of the 1 that ends $MeshFormat. For each
-/// element, calls `use(bytes of the element's numbers, beginning with its own, number of tags, number_at)`. Returns
-/// whether the list was parsed to its end.
+/// Parses runs of elements of one type: 32-bit numbers in the byte order of the number 1 at the end of $MeshFormat. For
+/// each element, calls `use(bytes of the element's numbers, beginning with its own, number of tags, number_at)`.
+/// Returns whether the list was parsed to its end.
 template <class Use>
 bool each_binary_element(const ElementList& list, const Use& use) {
   Words words(list.elements);

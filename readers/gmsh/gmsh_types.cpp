@@ -24,7 +24,7 @@ GmshElementType gmsh_element_type(int type) {
     const bool is_third_or_fourth = type == 90 || type == 91;
     if (!is_third_or_fourth && (type < 106 || type > 117)) return found;
     found.name = "Prism", found.corners = 6;
-    found.order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // others have no inner nodes
+    found.order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // types above 110 have no inner nodes
     if (found.order > 0) found.places = gmsh_prism_places(found.order);
     found.nodes = found.places.size() / 3;
   }

@@ -22,7 +22,7 @@ class TagIndex {
 
  private:
   std::vector<std::size_t> places_;                          ///< indices by tag, if tags are dense enough
-  std::vector<std::pair<std::size_t, std::size_t>> sorted_;  ///< pairs of tag and index, if they are not
+  std::vector<std::pair<std::size_t, std::size_t>> sorted_;  ///< pairs of tag and index, if tags are not dense
 };
 
 /// A Gmsh field at one time step.
@@ -32,7 +32,7 @@ struct GmshView {
   std::string name;
   Of of = Of::nodes;
   std::size_t components = 1;
-  TagIndex places;                               ///< index in the following arrays of each node's or element's tag
+  TagIndex places;                               ///< index, in the following arrays, of a node's or element's tag
   std::vector<double> values;                    ///< one entry per node or element
   std::vector<std::vector<double>> node_values;  ///< values for the nodes of each element
 };

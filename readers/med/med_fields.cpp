@@ -56,8 +56,8 @@ std::vector<std::size_t> places_of(const MedFile& file, const std::string& profi
   return places;
 }
 
-/// Writes the values that the file contains for `count` nodes, or for cells of one kind, to `out`.
 enum class Found { none, some, at_points };
+/// Writes the values that the file contains for `count` nodes, or for cells of one kind, to `out`.
 Found read_values(const MedFile& file, const FieldAt& field, med_entity_type entity, med_geometry_type kind,
                   std::size_t count, double* out) {
   std::array<char, MED_NAME_SIZE + 1> profile{}, place{};

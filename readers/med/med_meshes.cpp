@@ -84,7 +84,7 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
       block.offsets.push_back(block.connectivity.size());
     }
   }
-  // The index has one entry more than there are cells. In files of version 2 it has that entry even if there are no
+  // The index has one entry more than there are cells. In files of version 2, it has one entry even if there are no
   // cells.
   if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 1)
     throw scene::bad_input(fmt::format(

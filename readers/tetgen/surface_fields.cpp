@@ -33,8 +33,8 @@ class BoxTree {
     if (!order_.empty()) split(0, order_.size());
   }
 
-  /// Calls `visit(item)` for items in boxes within a squared distance, nearer halves first. `visit` returns the squared
-  /// distance that is still of interest.
+  /// Calls `visit(item)` for items whose boxes are not farther from p than a limit, a squared distance that is
+  /// `squared` at first and then what `visit` has returned. Searches the nearer half of a node first.
   template <class Visit>
   void near(const glm::dvec3& p, double squared, const Visit& visit) const {
     if (!nodes_.empty()) near(0, p, squared, visit);

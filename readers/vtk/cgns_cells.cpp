@@ -77,8 +77,8 @@ int corners_of_face(ElementType type) {
   }
 }
 
-/// Whether a type is that of points, lines or faces. These have the lowest type numbers, and higher ones for higher
-/// orders.
+/// Whether a type is that of points, lines or faces. Those of low order have the lowest type numbers; those of higher
+/// orders have further ranges of numbers.
 bool is_below_three(ElementType type) {
   return type <= CGNS_ENUMV(QUAD_9) || corners_of_face(type) > 0 ||
          (type >= CGNS_ENUMV(BAR_4) && type <= CGNS_ENUMV(QUAD_16)) || type == CGNS_ENUMV(BAR_5) ||

@@ -106,8 +106,9 @@ std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& sol
   require_cgns(cg_sol_ptset_read(zone.file, zone.base, zone.zone, solution.number, indices.data()), zone);
   for (std::size_t k = 0; k < indices.size(); ++k)
     if (indices[k] < 1 || indices[k] > size[k % axes])
-      throw scene::bad_input(fmt::format("{}: solution '{}' is of index {} of 1 to {}; export the file again",
-                                         zone.where, solution.name, indices[k], size[k % axes]));
+      throw scene::bad_input(
+          fmt::format("{}: solution '{}' refers to index {}, which is not from 1 to {}; export the file again",
+                      zone.where, solution.name, indices[k], size[k % axes]));
   std::vector<std::size_t> places;
   const auto add = [&](std::span<const cgsize_t> index) {
     std::size_t place = 0;
@@ -244,7 +245,7 @@ void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& n
       read_solution(zone, solution, namesakes, cells);
     else
       notes.push_back(fmt::format("'{}' of {} is left out: it has values {}", solution.name, zone.name,
-                                  !is_known ? "of some points or cells alone"
+                                  !is_known ? "for only some of the points or cells"
                                   : is_cell ? "for another number of cells"
                                             : "of faces or edges"));
   }

@@ -48,8 +48,8 @@ std::vector<CgnsSolution> solutions_of(const CgnsZone& zone, std::uint64_t step)
 using CgnsNamesakes = std::set<std::pair<CGNS_ENUMT(GridLocation_t), std::string>>;
 CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step);
 
-/// Adds the fields of a zone's points and cells. If several solutions have a field of this name, the field is named
-/// SOLUTION/FIELD. Missing values are NaN.
+/// Adds the fields of a zone's points and cells. Fields in `namesakes` are named SOLUTION/FIELD. Missing values are
+/// NaN.
 void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
                 cells::CellBlock& block, std::vector<std::string>& notes);
 

@@ -97,7 +97,7 @@ bool has_cylinder_axes(const CgnsZone& zone) {
   return false;
 }
 
-/// Whether the nearest node that states units has angles in degrees; radians otherwise.
+/// Whether angles are in degrees, according to the nearest node that states units; otherwise they are in radians.
 bool has_degrees(const CgnsZone& zone, int grid, int array) {
   const auto at = [&](int deep) {
     if (deep == 3)

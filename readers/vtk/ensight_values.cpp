@@ -105,7 +105,7 @@ class ValuesText {
 
   void skip_description() { is_binary_ ? static_cast<void>(at_ = std::min(text_.size(), at_ + 80)) : next_line(); }
 
-  /// Reads a small integer from a line or record of its own; 0 if there is none.
+  /// Reads a line or record that contains a single small integer; returns 0 if there is none.
   int number() {
     if (!is_binary_) return number_in(header().value_or(""));
     std::uint32_t number = 0;
@@ -291,7 +291,7 @@ class ValuesWalk {
     }
   }
 
-  /// Returns the names of the parts with solid cells that have no values.
+  /// Returns the names of the parts that have solid cells but no values.
   std::vector<std::string> absent(const std::vector<bool>& is_there) {
     std::vector<std::string> names;
     for (unsigned part = 0; part < parts_.GetNumberOfBlocks(); ++part) {

@@ -16,7 +16,7 @@ struct EnsightValues {
   /// Description of the place where a file with too few numbers ends: "inside part 2", "inside the nodes" (EnSight 6),
   /// "after part 1", "before its values". Empty if the file is complete.
   std::string end;
-  std::vector<std::string> absent;  ///< parts with solid cells for which the file, as Gold allows, has no values
+  std::vector<std::string> absent;  ///< parts that have solid cells but no values in the file, which Gold allows
 };
 
 /// Checks the file of a variable for the parts that `reader` has read into `data`. Only the plain layout is checked,

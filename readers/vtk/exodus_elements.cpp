@@ -20,8 +20,8 @@ struct Middle {
   std::initializer_list<std::uint8_t> corners;
 };
 
-/// Corrects the order of cells with this type and number of nodes, which only one kind of Exodus element has. The
-/// middle nodes of that kind are in one of two orders.
+/// Corrects the node order of the cells that have the type and number of nodes of `other`. Only one kind of Exodus
+/// element has both; its middle nodes are in one of two orders.
 void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initializer_list<Middle> middles) {
   const cells::NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
   const auto far_from_middles = [&](std::span<const std::uint32_t> nodes) {

@@ -32,7 +32,8 @@ std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int6
 
 /// Corrects the order of middle nodes. `block` must have points; its tetrahedra of 15 nodes and wedges of 21 nodes are
 /// read as if they had the order of the manual. Some programs write the order of the library's side sets or of Ioss. If
-/// one of these orders fits all cells of a kind better, the nodes of these cells are moved from it to the manual's.
+/// one of these orders fits all cells of a kind better, the nodes of these cells are moved from that order to the order
+/// of the manual.
 void settle_exodus_middles(cells::CellBlock& block);
 
 }  // namespace tessera::readers

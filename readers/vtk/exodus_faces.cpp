@@ -12,7 +12,7 @@ ExodusFaces::Lists ExodusFaces::read(ex_entity_type type, std::int64_t id, std::
                                      std::int64_t total) const {
   if (count < 0 || total < 0 || static_cast<std::uint64_t>(count) > most_values_ ||
       static_cast<std::uint64_t>(total) > most_values_)
-    fail_(fmt::format("block {} states {} parts of {} numbers", id, count, total));
+    fail_(fmt::format("block {} states {} lists with {} numbers in total, which is impossible", id, count, total));
   Lists lists;
   if (count == 0) return lists;
   lists.sizes.resize(static_cast<std::size_t>(count));

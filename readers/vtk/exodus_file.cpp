@@ -68,8 +68,8 @@ class ExodusFile {
   /// Called for functions that do not set anything if they return a warning.
   void require_values(int status, const char* what) const { require(status == EX_NOERR ? status : EX_FATAL, what); }
 
-  /// Returns the array of a nodal variable. Needed because without `file_size`, which meshio omits, the library
-  /// searches for one array of all variables, and finds none.
+  /// Returns the array of a nodal variable. Needed because without the attribute `file_size`, which meshio omits, the
+  /// library searches for one array of all variables, and finds none.
   [[nodiscard]] std::optional<int> node_array(int index) const {
     int array = 0, axes = 0;
     if (nc_inq_varid(id_, "vals_nod_var", &array) == NC_NOERR ||

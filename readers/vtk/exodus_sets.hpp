@@ -15,8 +15,8 @@
 namespace tessera::readers {
 
 /// The element sets of an Exodus file, which are lists of elements; elements are numbered from 1 over all blocks.
-/// Element sets are chosen by name like blocks. Node sets do not contain cells and cannot be chosen, nor can side sets,
-/// which contain faces of elements, unless they are requested.
+/// Element sets are chosen by name like blocks. Node sets contain no cells and cannot be chosen. Side sets contain
+/// faces of elements and can be chosen only if they are requested.
 class ExodusSets {
  public:
   /// Reads the sets of an open file. Lists have at most `most_values` values. `fail` throws an error about the file.

@@ -31,8 +31,7 @@ class Descent {
 
   ForestLeaves leaves() {
     for (std::size_t t = 0; t < forest_.trees.size(); ++t) add_tree(t);
-    // The lattice is that of the deepest leaf, which may be on a higher level than the deepest one that the file
-    // allows.
+    // The lattice is that of the deepest leaf, which may be less deep than the file allows.
     std::vector<std::int32_t> scale(static_cast<std::size_t>(leaves_.levels), 1);
     for (std::size_t level = scale.size() - 1; level-- > 0;) scale[level] = scale[level + 1] * forest_.branching;
     for (std::size_t l = 0; l < leaves_.level.size(); ++l)

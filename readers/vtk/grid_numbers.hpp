@@ -21,7 +21,7 @@ struct GridNumbers {
   [[nodiscard]] std::vector<double> as_doubles() const;
 };
 
-/// Copies doubles, rounded to float32 if `type` is that.
+/// Copies doubles, rounded to float32 if `type` is float32.
 GridNumbers numbers_of(std::span<const double> values, NumberType type = NumberType::float64);
 
 /// Maps the axes x, y and z of a grid to those of a stored array: axis a is the array's axis `along[a]`. All other axes

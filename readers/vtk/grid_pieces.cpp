@@ -318,7 +318,7 @@ class Assembly {
           continue;
         }
         const double before = coordinates_[a]->GetComponent(at, 0);
-        // Each coordinate was rounded once or twice from that of the same grid.
+        // Both values come from the same coordinate of a grid, and each was rounded once or twice.
         const double most = 4 * std::max(rounding_of(*own[a]), rounding_of(*coordinates_[a])) * std::abs(before);
         if (!(std::abs(x - before) <= most))
           throw scene::bad_input(fmt::format(

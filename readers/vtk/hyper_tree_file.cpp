@@ -86,7 +86,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     const auto array = vtkSmartPointer<vtkDataArray>(vtkDataArray::SafeDownCast(made));
     if (array == nullptr) throw damaged(fmt::format("array {} has no numbers", name_of(element)));
     const std::int64_t count = tuples * array->GetNumberOfComponents();
-    // Deflate packs at best 1032 bytes of eight bits into one byte.
+    // Deflate packs at most 1032 bytes, of eight bits each, into one byte.
     if (static_cast<double>(count) > 9000.0 * static_cast<double>(file_size))
       throw damaged(
           fmt::format("array {} has {} numbers, more than a file of this size can contain", name_of(element), count));

@@ -58,8 +58,8 @@ std::string odd_word(std::string_view word, const char* expected) {
   return fmt::format("it has {} where {} is expected", scene::quote(std::string(word)), expected);
 }
 
-/// Returns the fault in a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type); empty if
-/// there is none.
+/// Returns the fault in a line that contains numbers, a keyword with its arguments, or the head of an array of FIELD
+/// (name, two numbers and type); empty if there is none.
 std::string odd_word_in(const std::vector<std::string_view>& words) {
   if (words.size() == 4 && is_any_number(words[1]) && is_any_number(words[2]) && is_in(number_types, words[3]))
     return "";

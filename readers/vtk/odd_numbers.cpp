@@ -25,7 +25,8 @@
 namespace tessera::readers {
 namespace {
 
-/// A word and its placeholder, a float, so that arrays of floats represent it exactly.
+/// The placeholder for a word, and the number that the word means. The placeholder is a float, so that arrays of floats
+/// represent it exactly.
 struct Substitute {
   double number, meant;
 };
@@ -50,7 +51,8 @@ const Substitute* substitute_of(std::string_view word) {
   return nullptr;
 }
 
-/// Returns the words of a line with placeholders; empty if no word needs one, or if some words are not numbers.
+/// Returns the line after replacing words by placeholders; empty if no word needs a placeholder, or if some words are
+/// not numbers.
 std::string replaced(std::string_view line) {
   std::string result;
   bool any = false;

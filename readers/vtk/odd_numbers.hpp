@@ -15,7 +15,7 @@ namespace tessera::readers {
 /// numbers have been read.
 class OddNumbers {
  public:
-  /// Searches lines that consist of numbers. Does not find anything in a file that is not text.
+  /// Searches the lines that consist of numbers. A file that is not text is not searched.
   explicit OddNumbers(const std::filesystem::path& file);
 
   [[nodiscard]] bool any() const { return !text_.empty(); }
@@ -24,7 +24,7 @@ class OddNumbers {
   /// Returns the name of a file in memory with this text, which is valid during the lifetime of this object. If the
   /// file has no NaN or infinite numbers, returns the name of the file itself.
   [[nodiscard]] std::string file_name();
-  /// Replaces the placeholders in the data that were read by the original numbers.
+  /// In data that were read, replaces the placeholders by NaN or infinity.
   void restore(vtkDataObject* data) const;
 
  private:

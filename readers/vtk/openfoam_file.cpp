@@ -130,7 +130,8 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
     }
 }
 
-/// Whether a case's subdirectory of this name has files of the case: `system`, `constant`, a process's or a time's.
+/// Whether a case's subdirectory of this name has files of the case: `system`, `constant`, or the directory of a
+/// processor or of a time.
 bool belongs_to_case(const std::string& subdirectory) {
   return subdirectory == "system" || subdirectory == "constant" || subdirectory.starts_with("processor") ||
          number_of<double>(subdirectory).has_value();
@@ -158,7 +159,8 @@ bool is_case(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / "processors", unknown);
 }
 
-/// Returns the directory of the case to which a file or directory belongs: `named` itself, its directory, or one above.
+/// Returns the directory of the case to which a file or directory belongs: `named` itself, its parent directory, or a
+/// directory above that.
 std::filesystem::path case_of(const std::filesystem::path& named) {
   std::error_code unknown;
   if (std::filesystem::is_directory(named, unknown)) return named;
@@ -200,8 +202,8 @@ std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   return cells::distinct_names(std::move(patches));
 }
 
-/// Reads the request's share of the processors one by one, so that reading the whole case gives the blocks of all its
-/// shares, in order.
+/// Reads the processors of the request's share one by one. The blocks of all shares, in order, are thus the blocks of
+/// the complete case.
 void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
                      const std::string& source, const nlohmann::json& request, io::ForeignContents& contents) {
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
@@ -229,10 +231,11 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
   allow_for_folder(folder);
   const vtkNew<ProcessorReader> reader;
-  const vtkNew<vtkDummyController> alone;  // the reader asks for a rank, to which a part of the case belongs
+  const vtkNew<vtkDummyController> alone;  // the reader needs a rank to select its part of the case
   reader->SetController(alone);
   reader->SetFileName(file.c_str());
-  // Directories processor0, processor1, ... that a parallel run wrote and that were not reconstructed since.
+  // A case is decomposed if it has directories processor0, processor1, ... of a parallel run, but no reconstructed
+  // mesh.
   std::error_code unknown;
   const bool is_whole = !meshes_of(folder).empty();
   const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
@@ -247,7 +250,8 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOff();  // ours is conforming, one value per cell (cells/polyhedron_split.hpp)
+  reader->DecomposePolyhedraOff();  // cells/polyhedron_split.hpp decomposes polyhedra instead: conforming, one value
+                                    // per cell
   io::ForeignContents contents;
   contents.format = "OpenFOAM case";
   if (!is_decomposed && request.value("part", 0) > 0) return contents;

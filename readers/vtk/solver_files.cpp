@@ -137,7 +137,7 @@ class FluentReader : public vtkFLUENTReader {
 
  protected:
   bool OpenDataFile(const char* file) override {
-    std::error_code unknown;  // a pipe of that name would block the reader
+    std::error_code unknown;  // not set for a pipe of that name, which would block the reader
     if (!std::filesystem::is_regular_file(fluent_values_of(file), unknown)) return false;
     if (!vtkFLUENTReader::OpenDataFile(file)) return false;
     std::string spaced = spaced_fluent_values(io::WholeFile(fluent_values_of(file)).text());
@@ -151,7 +151,7 @@ class FluentReader : public vtkFLUENTReader {
 /// The sections of a Fluent file that precede its first binary section.
 struct FluentSections {
   int dimensions = 3;
-  std::string untyped;  ///< a zone of cells whose section ends before the cells' type; a hexadecimal number
+  std::string untyped;  ///< zone of the first section of cells that does not state their type, as a hexadecimal number
 };
 
 FluentSections fluent_sections(const std::filesystem::path& file) {
@@ -244,7 +244,7 @@ std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& fi
   return cases;
 }
 
-/// Whether a requested field ("point:NAME", "NAME:0", ...) is this variable.
+/// Whether a requested field ("point:NAME", "NAME:0", ...) names this variable.
 bool asks_for(std::string_view field, const std::string& name) {
   for (const std::string_view side : {"point:", "cell:"})
     if (field.starts_with(side)) field.remove_prefix(side.size());
@@ -261,8 +261,8 @@ void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& descr
           fmt::format("{}: it names {}, but there is no such file; put it there", source, gone.file));
     if (asks_for(request.value("field", ""), gone.variable))
       throw scene::bad_input(
-          fmt::format("{}: {} of that time step is in {}, but there is no such file; put it there, or choose another "
-                      "`field` or `time_step`",
+          fmt::format("{}: {} of the requested time step is in {}, but there is no such file; put it there, or choose "
+                      "another `field` or `time_step`",
                       source, gone.variable, gone.file));
     gone.of_points ? reader.SetPointArrayStatus(gone.variable.c_str(), 0)
                    : reader.SetCellArrayStatus(gone.variable.c_str(), 0);
@@ -276,8 +276,8 @@ struct CutFile {
   std::string place;
 };
 
-/// Returns the variables whose files end too early. VTK's reader adds zeros in text files, and otherwise fails without
-/// naming the file.
+/// Returns the variables whose files end too early. For text files, VTK's reader fills the missing values with zeros;
+/// for other files, it fails without naming the file.
 std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::vector<EnsightCase::Values>& variables,
                                vtkDataObject& data, std::vector<std::string>& notes) {
   std::vector<CutFile> found;
@@ -302,8 +302,8 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
   for (const CutFile& each : cut)
     if (asks_for(request.value("field", ""), each.values.variable))
       throw scene::bad_input(
-          fmt::format("{}: {} of that time step is in {}, which ends {}; copy it there again, or choose another "
-                      "`field` or `time_step`",
+          fmt::format("{}: {} of the requested time step is in {}, which ends {}; copy it there again, or choose "
+                      "another `field` or `time_step`",
                       file.string(), each.values.variable, each.values.file_name, each.place));
 }
 
@@ -365,7 +365,7 @@ io::ForeignContents read_case(Holdings& holdings, const std::filesystem::path& f
   io::ForeignContents contents;
   try {
     contents = read(true);
-  } catch (const scene::Error&) {  // a binary file that ends too early may cause this; the parts show which file it is
+  } catch (const scene::Error&) {  // perhaps a binary file ends early; reading without variables shows which file
     try {
       read(false);
     } catch (const scene::Error&) {

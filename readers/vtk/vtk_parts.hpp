@@ -12,7 +12,7 @@ class vtkDataSetAttributes;
 
 namespace tessera::readers {
 
-/// Returns the data sets of a VTK data object, those of composite data in order, without empty ones. Throws
+/// Returns the non-empty data sets of a VTK data object. The data sets of composite data are returned in order. Throws
 /// Error(bad_input) for anything other than data sets.
 std::vector<io::ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, const std::string& source);
 

@@ -67,9 +67,9 @@ class WithPieces final : public Reader {
     }
     const double cells = cells_in(whole), covered = cells_covered(pieces);
     if (covered < cells)
-      throw scene::bad_input(fmt::format("{}: its pieces have {:.0f} of its {:.0f} cells, of the points {} only {}; {}",
-                                         source, covered, cells, words_of(whole), words_of(box_of(pieces)),
-                                         write_again));
+      throw scene::bad_input(fmt::format(
+          "{}: its pieces have only {:.0f} of its {:.0f} cells: the whole has the points {}, the pieces only {}; {}",
+          source, covered, cells, words_of(whole), words_of(box_of(pieces)), write_again));
   }
 };
 
@@ -84,8 +84,8 @@ vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
-/// Corrects VTK's reader. After each piece it reorders the nodes of old hexahedra in all pieces read so far, so that
-/// those of earlier pieces are reordered twice.
+/// Corrects an error of VTK's reader: after each piece, it reorders the nodes of old hexahedra in all pieces read so
+/// far, so that the nodes of earlier pieces are reordered twice.
 class OldCellsOnce final : public vtkXMLUnstructuredGridReader {
  public:
   static OldCellsOnce* New() {

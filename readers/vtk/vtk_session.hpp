@@ -13,9 +13,9 @@ namespace tessera::readers {
 /// Runs one read or write by VTK, catches VTK's messages instead of printing them, and returns its warnings.
 ///
 /// VTK's output window and log level are global to the process. So sessions run one at a time, and restore the previous
-/// window and level. VTK does not throw; an error that it reports becomes error_of_vtk(). The same applies to running
-/// out of memory, which for small files means wrong counts. Messages that contain one of the words `passed_over` are
-/// neither errors nor warnings.
+/// window and level. VTK does not throw; an error that it reports becomes error_of_vtk(). Running out of memory also
+/// becomes an error; for a small file its cause is a wrong count in the file. Messages that contain one of the words in
+/// `passed_over` are neither errors nor warnings.
 std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work,
                            std::initializer_list<const char*> passed_over = {});
 

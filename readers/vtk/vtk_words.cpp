@@ -73,7 +73,7 @@ std::string words_for_users(std::string_view reported) {
   std::string text(reported);
   if (has(text, no_output)) return no_output;
   if (const std::size_t at = text.find("): "); at != std::string::npos) text.erase(0, at + 3);
-  // Removes "Algorithm vtkX returned failure for request: vtkInformation" and the state that follows.
+  // Removes "Algorithm vtkX returned failure for request: vtkInformation", and the dump of the object's state after it.
   for (const char* const state : {"Algorithm vtk", "vtkInformation", "Debug: O", "Modified Time:"})
     text.resize(std::min(text.size(), text.find(state)));
   for (std::size_t at = 0; (at = text.find("(0x", at)) != std::string::npos;) {

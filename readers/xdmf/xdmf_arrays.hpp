@@ -35,8 +35,8 @@ class XdmfHeavyFiles {
 /// Returns the numbers of an array as doubles, after reading them if necessary.
 std::vector<double> doubles_of(XdmfArray& array);
 
-/// Adds an array with its numbers in their own type, after reading them if necessary. For several `components`, the
-/// tally is that of the tuples' lengths. `array` is empty afterwards, unless it `is_kept`.
+/// Adds an array with its numbers in their own type, after reading them if necessary. If there are several
+/// `components`, the tally counts the lengths of the vectors. `array` is empty afterwards, unless it `is_kept`.
 io::ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components, bool is_kept);
 
 }  // namespace tessera::readers

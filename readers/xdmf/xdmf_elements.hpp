@@ -7,7 +7,7 @@
 
 namespace tessera::readers {
 
-/// Whether Xdmf's library reads the text of a file without changes, or that of rewritten_xdmf().
+/// Whether Xdmf's library reads the text of the file itself, or the text that rewritten_xdmf() returns.
 enum class XdmfText : bool { plain, to_be_rewritten };
 
 /// Throws Error(bad_input) for features that Xdmf's library would follow without a limit, or ignore: entities, included

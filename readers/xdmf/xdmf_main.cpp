@@ -78,7 +78,7 @@ struct Reading {
   std::vector<std::string>& notes;
 };
 
-/// Reads one block under one of its names.
+/// Reads one block, which gets the given name.
 class PartOf {
  public:
   PartOf(Reading& reading, const XdmfBlock& block, const std::string& name)
@@ -218,8 +218,8 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
   add_cell_names();
   const auto reader = XdmfReader::New();
   XdmfHeavyFiles files(file);
-  // The library splits file names, which fails for names of unnamed files. If it parses a text instead of a file, names
-  // are relative to the current directory, which is therefore changed.
+  // The library splits file names, which fails for the names of files without a name. If it parses a text instead of a
+  // file, file names in the text are relative to the current directory, which is therefore changed.
   const CurrentFolder current(io::is_inflated(file) || is_plain ? std::filesystem::path() : file.parent_path());
   const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
       !is_plain               ? reader->parse(rewritten_xdmf(file))

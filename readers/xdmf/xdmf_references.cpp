@@ -48,7 +48,8 @@ void require_inside(const XdmfSubset& selection, const Sizes& sizes, const std::
 
 /// Throws if a read has the wrong length. Xdmf's library does not report this error; after the checks it cannot occur.
 void require_count(std::size_t is, std::uint64_t should) {
-  if (is != should) XdmfError::message(XdmfError::FATAL, fmt::format("there are {} numbers of {}", is, should));
+  if (is != should)
+    XdmfError::message(XdmfError::FATAL, fmt::format("there are {} numbers, but {} are required", is, should));
 }
 
 template <class T>

@@ -118,7 +118,8 @@ class Rewriting {
     }
   }
 
-  /// Distributes the times of a collection to its grids. They are a list, or given by first time, step and count.
+  /// Distributes the times of a collection to its grids. The times are given as a list, or as first time, step and
+  /// count.
   void spread_times() {
     for (xmlNode* node : all("//Time[not(@Value)]")) {
       const std::string kind = property(node, "TimeType").value_or("");
@@ -172,7 +173,7 @@ class Rewriting {
       includes.push_back(xmlNewNode(nullptr, xml("include")));
       xmlReplaceNode(node, includes.back());
     }
-    // The paths of nodes do not change from here on.
+    // The paths of nodes do not change after the replacement of all references, so they are computed here.
     for (std::size_t k = 0; k < includes.size(); ++k)
       set(includes[k], "xpointer", fmt::format("xpointer({})", taken(xmlGetNodePath(targets[k]))));
     for (xmlNode* node : references) xmlFreeNode(node);

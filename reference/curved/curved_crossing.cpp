@@ -16,8 +16,8 @@ constexpr int most_pieces = 4000;
 constexpr double smallest_piece = 0x1p-26;  // fraction of the face
 constexpr double edge_tolerance = 1e-9;     // fraction of a piece
 
-/// Whether a piece has no crossing that counts: all control points are on one side of the ray, by more than `rounding`,
-/// or the piece is a point, or a line along the ray, within that tolerance.
+/// Whether a piece has no crossing, or only a negligible one: all control points are on one side of the ray by more
+/// than `rounding`, or the piece is, up to `rounding`, a point or a line along the ray.
 bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 4> low, high;
@@ -65,7 +65,7 @@ bool is_inside(bool triangle, glm::dvec2 place) {
   return (triangle ? place.x + place.y : std::max(place.x, place.y)) <= 1 + edge_tolerance;
 }
 
-/// Newton's method, starting at a place of the whole face.
+/// Applies Newton's method, starting at the coordinates `place` of the face.
 std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place) {
   constexpr int most_steps = 40, few_steps = 8;
   constexpr double last_step = 1e-10, short_step = 1e-6;
@@ -75,7 +75,7 @@ std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place)
     const double length = glm::length(step);
     if (!(length < 10)) return std::nullopt;
     place += step;
-    // Seen from very far away, rounding prevents steps from becoming shorter than `last_step`.
+    // If the eye is very far away, rounding prevents steps from becoming shorter than `last_step`.
     if (length < last_step || (n > few_steps && length < short_step)) return place;
   }
   return std::nullopt;

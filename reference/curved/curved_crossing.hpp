@@ -17,7 +17,7 @@ struct Crossing {
 };
 
 /// Appends every crossing of the ray with a face, unordered. A crossing at an edge or a corner of the face may be found
-/// twice, and a crossing outside the face may be found if it is within 1e-9 of the face's size of an edge.
+/// twice. A crossing outside the face may be found if its distance from an edge is at most 1e-9 of the face's size.
 ///
 /// How      Pieces of the face whose control points are on one side of the ray (along eight directions) are dropped, as
 ///          are pieces that are a point, or a line along the ray, up to rounding. The others are halved until the map
@@ -25,8 +25,8 @@ struct Crossing {
 ///          their mean). Then Newton's method finds the only crossing of the piece, or that there is none. Only
 ///          crossings within rounding of a tangent may be missed: see below.
 /// Limits   Pieces smaller than 2^-26 of the face are not halved further. After 4,000 pieces, the remaining ones are
-///          dropped: they are faces along the ray, or contain curves along the ray. Two crossings closer to each other
-///          than a piece of that size bound a negligible length.
+///          dropped: they are faces along the ray, or contain curves along the ray. Two crossings that are closer to
+///          each other than the size of such a piece bound a negligible length.
 /// Source   Nishita, Sederberg, Kakimoto, "Ray Tracing Trimmed Rational Surface Patches", SIGGRAPH 1990, for the frame
 ///          and the hull; the one-to-one test is Krawczyk's, as in Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH
 ///          1985.

@@ -11,13 +11,13 @@
 
 namespace tessera::reference {
 
-/// The volume rendering integral along one ray, front to back, if the scalar is any smooth function in each segment.
-/// Integral is the corresponding class for linear scalars, GridIntegral that for cubics.
+/// The volume rendering integral along one ray, front to back, for a scalar that is an arbitrary smooth function in
+/// each segment. The class Integral does the same for linear scalars, GridIntegral for cubics.
 ///
-/// A piece is cut at the turning points of the scalar, and between these where the scalar passes a knot of the transfer
-/// function (bisection down to neighbouring doubles). Between two cuts, extinction and colour are polynomials of degree
-/// twelve at most. Optical depth and colour are computed by Gauss-Legendre quadrature with eight points, on steps of at
-/// most half a unit of optical depth. The error is about 1e-12 in linear RGBA if the scalar is exact. Integration stops
+/// A piece is cut at the turning points of the scalar, and where the scalar passes a knot of the transfer function
+/// (bisection down to neighbouring doubles). Between two cuts, extinction and colour are polynomials of degree twelve
+/// at most. Optical depth and colour are computed by Gauss-Legendre quadrature with eight points, on steps of at most
+/// half a unit of optical depth. The error is about 1e-12 in linear RGBA if the scalar is exact. Integration stops
 /// where T < 1e-18.
 class CurvedIntegral {
  public:
@@ -43,8 +43,8 @@ class CurvedIntegral {
   [[nodiscard]] Ramp ramp(double within, double origin) const;
 
   void add_cut(const SmoothScalar& scalar, double u0, double u1, double half_length, double origin);
-  /// Adds the light of [u0, u1], which is at optical depth `before` behind the light added so far. `half_length` is the
-  /// length per unit of u.
+  /// Adds the light of [u0, u1]. `before` is the optical depth between the beginning of the cut and u0. `half_length`
+  /// is the length per unit of u.
   void add_light(const SmoothScalar& scalar, const Ramp& ramp, double u0, double u1, double half_length, double before,
                  int halvings);
 

@@ -14,8 +14,8 @@ void add_between(const glm::dvec3& a, const glm::dvec3& b, int order, Places& pl
     places.push_back((a * static_cast<double>(order - i) + b * static_cast<double>(i)) / static_cast<double>(order));
 }
 
-/// Adds the places inside the triangle abc of `order`. They form a smaller triangle: corners, edges, and recursively
-/// its inside.
+/// Adds the places inside the triangle abc of a given `order`. These places form a smaller triangle: its corners, its
+/// edges, and recursively its inside.
 void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, int order, Places& places) {
   if (order < 3) return;
   const glm::dvec3 along_b = (b - a) / static_cast<double>(order), along_c = (c - a) / static_cast<double>(order);
@@ -94,7 +94,7 @@ std::vector<glm::dvec3> hexahedron_nodes(std::array<int, 3> orders) {
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
   const auto [nr, ns, nt] = orders;
   Places places(c.begin(), c.end());
-  for (const std::size_t end : {0, 4}) {  // all edges have the direction of their axis
+  for (const std::size_t end : {0, 4}) {  // all edges point in the positive direction of their axis
     add_between(c[end], c[end + 1], nr, places);
     add_between(c[end + 1], c[end + 2], ns, places);
     add_between(c[end + 3], c[end + 2], nr, places);
@@ -116,7 +116,7 @@ std::vector<glm::dvec3> lagrange_pyramid_nodes(int order) {
   constexpr std::array<std::array<std::size_t, 2>, 4> base{{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};
   Places places(c.begin(), c.end());
   for (const auto& [from, to] : base) add_between(c[from], c[to], order, places);
-  for (std::size_t i = 0; i < 4; ++i)  // these edges are vertical in the box
+  for (std::size_t i = 0; i < 4; ++i)  // in the box, these edges are parallel to t
     for (int k = 1; k < order; ++k) places.emplace_back(c[i].x, c[i].y, static_cast<double>(k) / order);
   const auto add_layer = [&](int k) {
     const double t = static_cast<double>(k) / order;

@@ -47,8 +47,9 @@ std::span<const std::uint32_t> nodes_of(const CurvedCells& cells, std::size_t ce
 void check_nodes(const CurvedCells& cells, std::size_t cell) {
   for (const std::uint32_t node : nodes_of(cells, cell)) {
     if (node >= cells.positions.size())
-      throw scene::bad_input(fmt::format("curved cells: cell {} uses point {}, there are {}; write all points", cell,
-                                         node, cells.positions.size()));
+      throw scene::bad_input(
+          fmt::format("curved cells: cell {} uses point {}, but there are only {} points; write all points", cell, node,
+                      cells.positions.size()));
     const bool of_points = cells.association == Association::point;
     if (!finite(cells.positions[node]) || (of_points && !std::isfinite(cells.scalars[node])))
       throw scene::bad_input(
@@ -133,7 +134,7 @@ void CurvedReference::bound(Cell& cell) const {
 CurvedReference::Frame CurvedReference::frame(double x, double y) const {
   Frame frame{view_.ray(x, y), glm::dvec3(0), glm::dvec3(0), view_.length_per_depth(x, y)};
   const glm::dvec3 along = glm::normalize(frame.ray.step), size = glm::abs(along);
-  glm::dvec3 other(0);  // along the axis with the smallest component of the ray
+  glm::dvec3 other(0);  // unit vector of the axis along which the ray has its smallest component
   other[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1;
   frame.across_x = glm::normalize(glm::cross(along, other));
   frame.across_y = glm::cross(along, frame.across_x);
@@ -154,7 +155,7 @@ CellOnRay CurvedReference::on_ray(const Cell& cell, const Frame& frame, std::vec
   }
   const glm::dvec3 sides = high - low;
   const double size = std::max({sides.x, sides.y, sides.z});
-  // Distances from the eye have a relative rounding of 1e-16, which tolerances of 1e-14 of the size must cover.
+  // Distances from the eye have a relative rounding error of 1e-16. The tolerances of 1e-14 of the size must cover it.
   constexpr double size_share = 0.05, rounding_share = 0.25;
   const double rounding = size > 0 ? std::max(1.0, rounding_share * farthest / size) : 1;
   return {&shapes_[cell.shape].basis, control, cell.field, std::max(size, size_share * farthest), rounding};
@@ -169,7 +170,7 @@ std::vector<CurvedReference::Met> CurvedReference::met(double x, double y,
     if (!(cell.x_low <= x && x <= cell.x_high && cell.y_low <= y && y <= cell.y_high)) continue;
     std::vector<glm::dvec3> control;
     const CellOnRay on_ray = this->on_ray(cell, frame, control);
-    controls.push_back(std::move(control));  // moving the vector keeps its points in place
+    controls.push_back(std::move(control));  // moving the vector does not move its elements, to which `on_ray` refers
     crossings.clear();
     for (const FacePatch& face : shapes_[cell.shape].faces) find_crossings(on_ray, face, crossings);
     for (InnerPath& path : inner_paths(on_ray, crossings)) {

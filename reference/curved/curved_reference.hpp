@@ -54,9 +54,8 @@ struct CurvedSegment {
 /// Order    (front, back, cell). Cells must not overlap or be folded: where the map from a cell's own coordinates to
 ///          space is not one-to-one, the result is finite but undefined, and may take up to a second.
 /// Ties     have no rule: a ray exactly through an edge or a node, or along a face, may miss a segment, or count a
-/// segment
-///          of negligible length twice. Rays at a small distance are correct.
-/// Error    about 1e-12 in linear RGBA for cells of moderate shape; that of inversion grows as cells become flat.
+///          segment of negligible length twice. Rays at a small distance from the edge, node or face are correct.
+/// Error    about 1e-12 in linear RGBA for cells of moderate shape; the error of inversion grows as cells become flat.
 /// Cost     20 to 100 microseconds per cell that a ray meets, more if the ray nearly touches the cell.
 class CurvedReference final : public RayReference {
  public:

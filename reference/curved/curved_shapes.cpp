@@ -86,8 +86,9 @@ void add_serendipity(int most_t, std::vector<Function>& space) {
     for (const auto& e : exponents) space.push_back(monomial(e[0], e[1], k));
 }
 
-/// The hexahedron with 20 nodes: the monomials of degree two at most, not counting variables to the first power
-/// (Arnold, Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
+/// The hexahedron with 20 nodes: the monomials whose degree is at most two if variables to the first power are not
+/// counted (Arnold, Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics
+/// 2011).
 CellShape quadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(1, space);
@@ -95,14 +96,15 @@ CellShape quadratic_hexahedron() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(20, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// The hexahedron with 24 nodes: serendipity across, quadratic along.
+/// The hexahedron with 24 nodes: serendipity in (r, s), quadratic in t.
 CellShape biquadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(2, space);
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(24, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// The wedge with 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
+/// The wedge with 15 nodes: products of quadratic functions in the triangle with linear functions in t, and of linear
+/// functions in the triangle with quadratic functions in t.
 CellShape quadratic_wedge() {
   std::vector<Function> space;
   for (int k = 0; k < 2; ++k)
@@ -112,7 +114,7 @@ CellShape quadratic_wedge() {
   return spanned(BernsteinBasis(Domain::prism, {2, 0, 2}), first(15, wedge_nodes(2, 2)), space);
 }
 
-/// The bilinear functions in the box that reduce to one function at the apex.
+/// The linear pyramid: the bilinear functions in the box that are constant on the face of the apex.
 CellShape linear_pyramid() {
   std::vector<Function> space{corner_monomial(0, 0, 0), corner_monomial(0, 0, 1)};
   space.emplace_back([](const glm::dvec3& p) { return p.x * (1 - p.z); });
@@ -121,13 +123,14 @@ CellShape linear_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {1, 1, 1}), first(5, pyramid_nodes()), space);
 }
 
-/// Functions of x = 2r - 1, y = 2s - 1 and w = 2 - 2t, which vanishes at the apex.
+/// Returns a function of x = 2r - 1, y = 2s - 1 and w = 2 - 2t; w vanishes at the apex.
 Function towards_apex(std::function<double(double x, double y, double w)> f) {
   return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
 }
 
-/// Returns the functions that both quadratic pyramids have. They are quadratic on every edge. With the functions that
-/// each pyramid adds, they are complete to second degree, except that x^2 + y^2 is rational.
+/// Returns the functions that both quadratic pyramids have. They are quadratic on every edge. Together with the
+/// functions that each pyramid adds, they span all polynomials of second degree, except that x^2 + y^2 is replaced by a
+/// rational function.
 std::vector<Function> quadratic_pyramid_space() {
   std::vector<Function> space;
   for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
@@ -153,7 +156,7 @@ CellShape quadratic_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(13, pyramid_nodes()), space);
 }
 
-/// The pyramid with 19 nodes, which also has bubbles on faces and inside.
+/// The pyramid with 19 nodes, which also has bubble functions on faces and inside.
 CellShape triquadratic_pyramid() {
   std::vector<Function> space = quadratic_pyramid_space();
   space.push_back(towards_apex([](double x, double y, double w) { return x * (1 - y * y) * w * w * w; }));
@@ -168,8 +171,8 @@ CellShape triquadratic_pyramid() {
 }
 
 /// The Lagrange pyramid: the rational functions of Bergot, Cohen and Durufle ("Higher-order finite elements for hybrid
-/// meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010), which in the box are x^i y^j
-/// times powers of w from the larger of i and j up to the order.
+/// meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010). In the box they are x^i y^j w^k,
+/// with k from max(i, j) up to the order.
 CellShape lagrange_pyramid(int order) {
   std::vector<Function> space;
   for (int i = 0; i <= order; ++i)
@@ -180,7 +183,7 @@ CellShape lagrange_pyramid(int order) {
   return spanned(BernsteinBasis(Domain::box, {order, order, order}), lagrange_pyramid_nodes(order), space);
 }
 
-/// Returns the middles of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
+/// Returns the centres of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
 std::vector<glm::dvec3> tet_middles() {
   constexpr double third = 1.0 / 3;
   return {{third, third, 0}, {third, 0, third}, {third, third, third}, {0, third, third}, glm::dvec3(0.25)};
@@ -204,8 +207,9 @@ void add_face_bubbles(std::vector<Function>& space) {
   space.emplace_back([](const glm::dvec3& p) { return p.y * p.z * fourth(p); });
 }
 
-/// The tets of 5, 7, 8, 11, 14 and 15 nodes: complete to first degree, from 11 nodes on to second, with a cubic bubble
-/// for each face and a quartic one inside, if these have a node. With 7 nodes the base's edges are quadratic.
+/// The tets of 5, 7, 8, 11, 14 and 15 nodes: all polynomials of first degree, or of second degree from 11 nodes on,
+/// with a cubic bubble function for each face that has a node, and a quartic one if a node is inside. With 7 nodes, the
+/// base's edges are quadratic.
 CellShape enriched_tet(std::size_t count) {
   const bool is_quadratic = count > 10, has_faces = count == 8 || count >= 14,
              has_inside = count != 7 && count != 8 && count != 14;
@@ -225,7 +229,8 @@ CellShape enriched_tet(std::size_t count) {
   return spanned(BernsteinBasis(Domain::tet, {4, 4, 4}), std::move(nodes), space);
 }
 
-/// (1 - x^2)(1 - y^2) z^k along each axis in turn, for k = 0 and 1, and (1 - x^2)(1 - y^2)(1 - z^2).
+/// Returns a bubble function of the hexahedron. If `inside`, it is (1 - x^2)(1 - y^2)(1 - z^2); otherwise it is (1 -
+/// x^2)(1 - y^2) z^k, with z as the axis `along`, and k = 0 or 1.
 Function hexahedron_bubble(int along, int k, bool inside) {
   return [=](const glm::dvec3& p) {
     double value = 1;
@@ -237,8 +242,9 @@ Function hexahedron_bubble(int along, int k, bool inside) {
   };
 }
 
-/// The hexahedra of 9, 16, 21 and 26 nodes: trilinear with 9, serendipity across and linear along with 16, the
-/// functions of the 20 nodes with more; plus bubbles for the faces, and inside, that have a node.
+/// The hexahedra of 9, 16, 21 and 26 nodes. With 9 nodes, the functions are trilinear; with 16, serendipity in (r, s)
+/// and linear in t; with 21 and 26, those of the hexahedron of 20 nodes. A bubble function is added for each node that
+/// is in a face (26) or inside (9, 21).
 CellShape incomplete_hexahedron(std::size_t count) {
   const std::vector<glm::dvec3> all = hexahedron_nodes({2, 2, 2});
   std::vector<Function> space;
@@ -264,7 +270,8 @@ CellShape incomplete_hexahedron(std::size_t count) {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), std::move(nodes), space);
 }
 
-/// The wedges of 16 and 20 nodes: the 15 nodes' functions, with bubbles inside, or for the five faces.
+/// The wedges of 16 and 20 nodes: the functions of the wedge of 15 nodes, and bubble functions inside (16) or for the
+/// five faces (20).
 CellShape incomplete_wedge(std::size_t count) {
   const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
   std::vector<glm::dvec3> nodes(quadratic.begin(), quadratic.begin() + 15);
@@ -291,7 +298,7 @@ CellShape incomplete_wedge(std::size_t count) {
   return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
 }
 
-/// The wedge of 21 nodes: quadratic with a cubic bubble in the triangle, quadratic along.
+/// The wedge of 21 nodes: quadratic with a cubic bubble function in the triangle, quadratic in t.
 CellShape enriched_wedge() {
   const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
   const double third = 1.0 / 3;
@@ -416,8 +423,9 @@ CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3
   const CellType type{vtk_type};
   if (const std::size_t wanted = nodes_of(type); wanted > 0) {
     if (nodes != wanted)
-      throw scene::bad_input(fmt::format("{}: type {} has {} nodes, this cell {}; write all of its nodes", where,
-                                         vtk_type, wanted, nodes));
+      throw scene::bad_input(
+          fmt::format("{}: cells of type {} have {} nodes, but this cell has {}; write all of its nodes", where,
+                      vtk_type, wanted, nodes));
     return fixed_shape(type);
   }
   if (type == CellType::lagrange_pyramid) {

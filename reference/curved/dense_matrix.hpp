@@ -27,7 +27,8 @@ Matrix product(const Matrix& a, const Matrix& b);
 /// result.
 Matrix inverse(const Matrix& matrix);
 
-/// Returns the Kronecker product: the row (i, j) is i + j * rows of `fast`, and likewise for columns.
+/// Returns the Kronecker product. Its row for row i of `fast` and row j of `slow` is i + j * (rows of `fast`), and
+/// likewise for columns.
 Matrix kronecker(const Matrix& slow, const Matrix& fast);
 
 }  // namespace tessera::reference

@@ -20,14 +20,13 @@ struct Cubic {
   [[nodiscard]] double at(double u) const { return ((c[3] * u + c[2]) * u + c[1]) * u + c[0]; }
 };
 
-/// The volume rendering integral along one ray, front to back, if the scalar is a cubic in each segment. Integral is
-/// the corresponding class for linear scalars.
+/// The volume rendering integral along one ray, front to back, for a scalar that is a cubic in each segment. The class
+/// Integral does the same for linear scalars.
 ///
-/// A segment is cut at the turning points of the cubic, and between these where the cubic passes a knot of the transfer
-/// function (bisection down to neighbouring doubles). In a piece, extinction and colour are cubics, too. The optical
-/// depth is a quartic in closed form, and the colour is computed by Gauss-Legendre quadrature with eight points on
-/// steps of at most half a unit of optical depth. The error is about 1e-12 in linear RGBA. Integration stops where T <
-/// 1e-18.
+/// A segment is cut at the turning points of the cubic, and where the cubic passes a knot of the transfer function
+/// (bisection down to neighbouring doubles). In a piece, extinction and colour are cubics, too. The optical depth is a
+/// quartic in closed form, and the colour is computed by Gauss-Legendre quadrature with eight points on steps of at
+/// most half a unit of optical depth. The error is about 1e-12 in linear RGBA. Integration stops where T < 1e-18.
 class GridIntegral {
  public:
   /// The knots must outlive the integral.

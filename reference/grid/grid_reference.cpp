@@ -71,7 +71,7 @@ GridIntegral::Light GridReference::light(const Voxel& voxel, const glm::dvec3& p
   const glm::dvec3 normal = glm::normalize(glm::transpose(to_local_) * gradient), to_eye = -glm::normalize(step_world);
   const glm::dvec3 half = to_light_ + to_eye;
   const double n_l = std::abs(glm::dot(normal, to_light_));
-  // If the light is exactly behind, there is no halfway vector.
+  // If the light is exactly opposite to the eye, there is no halfway vector.
   const double n_h = glm::length(half) > nothing ? std::abs(glm::dot(normal, glm::normalize(half))) : 0;
   return {shading_->ambient + shading_->diffuse * n_l, shading_->specular * std::pow(n_h, shading_->shininess)};
 }
@@ -98,7 +98,8 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
                view_.length_per_depth(x, y),
                false,
                false};
-  double span = 0;  // largest planar depth in the volume, which determines whether parallel planes are crossed
+  double span = 0;  // largest planar depth in the volume; a ray that crosses no plane of an axis up to this depth
+                    // counts as parallel
   const scene::Box box = scene::bounds(g);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p(corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
@@ -111,7 +112,7 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
     const double voxel = (high - low) / static_cast<double>(g.points[a] - 1);
     if (std::abs(ray.step[axis]) * span < plane_tolerance * voxel) {
       const double local = ray.origin[axis];
-      // The direction along this axis in which an infinitesimal shift moves the ray.
+      // Returns how far a shift of the pixel coordinates moves the ray along this axis; only the sign is used.
       const auto moved = [&](double dx, double dy) {
         const View::Ray other = view_.ray(x + dx, y + dy);
         return (to_local_ * (other.origin - world.origin) + (to_local_ * (other.step - world.step)) * span)[axis];
@@ -194,7 +195,7 @@ void GridReference::add_part(const LocalRay& ray, const Voxel& voxel, double z0,
   if (!voxel.constant) {
     for (std::size_t i = 0; i < 8; ++i) field[i].c[0] = voxel.values[i] - origin;
     const glm::dvec3 front = voxel.place(ray.origin + z0 * ray.step), rise = (z1 - z0) * ray.step / voxel.side;
-    for (std::size_t a = 0; a < 3; ++a)  // i first: neighbours in the box's order
+    for (std::size_t a = 0; a < 3; ++a)  // along i first: neighbours in the box's order
       for (std::size_t i = 0; i < (8u >> (a + 1)); ++i)
         field[i] = mixed(field[2 * i], field[2 * i + 1], front[static_cast<int>(a)], rise[static_cast<int>(a)]);
     if (shading_)

@@ -31,11 +31,10 @@ namespace tessera::reference {
 /// Shading  as defined by scene/shading.hpp. A segment is between two crossings of lattice planes, the eye, the
 ///          clipping planes and surfaces. A gradient below 1e-12 of the voxel's samples counts as zero.
 /// Surfaces of point data are intersected in each voxel as in grid_surface.hpp, and lit by the gradient of the
-/// trilinear
-///          field. The sides of a gap are not surfaces.
+///          trilinear field. The sides of a gap are not surfaces.
 /// Error    about 1e-12 in linear RGBA.
-/// Cost     a microsecond or two per voxel along a ray. It stores no samples: volumes larger than memory can be
-/// checked.
+/// Cost     a microsecond or two per voxel along a ray. It stores no samples, so it can check volumes larger than
+///          memory.
 class GridReference final : public RayReference, public LayerReference {
  public:
   /// The source must outlive the reference. Only the parts of rays inside all half-spaces count (kept_interval.hpp).
@@ -58,10 +57,10 @@ class GridReference final : public RayReference, public LayerReference {
   /// A view ray in the grid's local frame: at planar depth z it is at origin + z * step.
   struct LocalRay {
     glm::dvec3 origin, step;
-    std::array<std::int64_t, 3> in_plane;  ///< the voxel along an axis whose planes are parallel to the ray, else -1
+    std::array<std::int64_t, 3> in_plane;  ///< for axes whose planes are parallel to the ray: its voxel; others: -1
     double begin, end;                     ///< planar depths inside the volume and view; empty if begin >= end
     double length_per_depth;
-    bool begin_cut, end_cut;  ///< whether a clipping plane is at the beginning and end
+    bool begin_cut, end_cut;  ///< whether a clipping plane bounds the interval at its beginning and end
   };
   /// A voxel that a ray meets.
   struct Voxel {

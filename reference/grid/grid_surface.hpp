@@ -10,15 +10,16 @@
 
 namespace tessera::reference {
 
-/// The segment of a ray in a voxel of point data. `corner` a + 2 b + 4 c is the value at the voxel's corner (a, b, c);
-/// coordinates of places in the voxel are 0 to 1 along each axis.
+/// The segment of a ray in a voxel of point data. corner[a + 2 b + 4 c] is the value at the voxel's corner (a, b, c).
+/// Coordinates of places in the voxel are 0 to 1 along each axis.
 struct VoxelStretch {
   std::array<double, 8> corner;
   glm::dvec3 front, back;                    ///< places where the segment begins and ends
   bool front_cut = false, back_cut = false;  ///< whether a clipping plane is at the front and back
 };
 
-/// A crossing of a segment with a surface: the fraction of the segment in front of it. Crossings are in order.
+/// A crossing of a segment with a surface. `part` is the fraction of the segment in front of the crossing. Crossings
+/// are in order.
 struct GridCrossing {
   double part;
   glm::dvec3 place;
@@ -33,7 +34,8 @@ struct GridCrossing {
 /// `cut` counts as equal to the surface's value if it differs by less than a part in 1e10, as in surface_crossings().
 std::vector<GridCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces, const VoxelStretch& stretch);
 
-/// Returns the field's derivatives along the axes of a voxel at a place in the voxel, per side of the voxel.
+/// Returns the field's derivatives along the axes of a voxel at a place in the voxel. The unit of length along each
+/// axis is the voxel's side.
 glm::dvec3 slopes(const std::array<double, 8>& corner, const glm::dvec3& place);
 
 }  // namespace tessera::reference

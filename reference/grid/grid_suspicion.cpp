@@ -20,13 +20,13 @@ namespace {
 
 constexpr std::int64_t side = 8, most_blocks = 8192;
 constexpr double nothing = 1e-12;
-/// One pixel in `pixels_per_mark` of a voxel is marked, at most `most_marks`. Boundaries may be small and have more
-/// marks.
+/// The fraction 1 / `pixels_per_mark` of a voxel's pixels is marked, at most `most_marks` pixels. Boundaries may be
+/// small and have more marks.
 constexpr double pixels_per_mark = 16, border_pixels_per_mark = 4, most_marks = 16;
 /// Distance along a ray, in voxel sizes, behind the first visible sample within which nothing counts as hidden.
 constexpr double skin = 4;
 
-/// Range of the samples that are not blank, and whether there are any.
+/// Range of the samples that are not blank, and whether any sample is blank.
 struct Values {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool blank = false;
@@ -68,7 +68,7 @@ class GridSuspects {
     const bool cell_data = geometry_.association == scene::Association::cell;
     scene::SampleBox box;
     for (std::size_t a = 0; a < 3; ++a) {
-      // Cell data include neighbours on one side, because a boundary is between two voxels.
+      // The box has one more sample per axis. Cell data also need it, because a boundary is between two voxels.
       box.low[a] = place[a] * side;
       box.high[a] = std::min(samples[a], box.low[a] + side + 1);
     }
@@ -97,7 +97,8 @@ class GridSuspects {
         if ((n >> a & 1) == 0) raise_ties(corner(n), corner(n | 1 << a), image_.size, edge_, found_.tie);
     const glm::dmat3 to_local = scene::world_to_local(geometry_);
     const double far = farthest();
-    // All orthographic rays have one direction, which is usually not along a plane.
+    // All orthographic rays have the same direction. Usually it is not along a lattice plane, so that there are no
+    // ties.
     const glm::dvec3 direction = to_local * view_.ray(0, 0).step;
     const auto strays = [&](std::size_t a) { return std::abs(direction[static_cast<int>(a)]) * far / voxel(a); };
     if (!view_.perspective() && std::min({strays(0), strays(1), strays(2)}) > tying_distance) return;
@@ -121,7 +122,7 @@ class GridSuspects {
   }
   [[nodiscard]] std::int64_t all_blocks() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
 
-  /// World units: the side of a mean voxel along an axis, and its diagonal.
+  /// Returns the mean side of a voxel along an axis, in world units.
   [[nodiscard]] double voxel(std::size_t a) const {
     return (geometry_.lattice(a, voxels_[a]) - geometry_.lattice(a, 0)) / static_cast<double>(voxels_[a]);
   }

@@ -17,9 +17,10 @@ namespace tessera::reference {
 /// Cost    a pass over the samples, in blocks of 8^3 voxels; if there are more than 8,192 blocks, only 8,192 of them,
 ///         evenly distributed.
 struct GridSuspicion {
-  SuspicionMap step;    ///< possible error of light from rounding of the field in a voxel, at some of its pixels
-  SuspicionMap border;  ///< light of voxels that have blank and other samples, or are next to blank voxels
-  SuspicionMap tie;     ///< nearness of the ray to a lattice plane or an edge of the volume, times contrast
+  SuspicionMap step;    ///< possible error of light from rounding of the field in a voxel; set at some of its pixels
+  SuspicionMap border;  ///< light of voxels at a boundary of blank samples: those with blank and other samples, and
+                        ///< those next to blank voxels
+  SuspicionMap tie;     ///< contrast times the nearness of the ray to a lattice plane or to an edge of the volume
 };
 
 /// `edge` is the image's ImageSuspicion::edge. `threads` 0: all cores.

@@ -41,7 +41,7 @@ glm::dvec3 change_of_place(const CellPoint& point, const glm::dvec3& wanted) {
 std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm::dvec3 start, BasisValues& room) {
   constexpr int most_steps = 30, few_steps = 8;
   constexpr double far_away = 10;      // in coordinates of the domain, which has size one
-  constexpr double last_step = 1e-10;  // the next step would be the square of this, below rounding
+  constexpr double last_step = 1e-10;  // the length of the next step would be about the square of this, below rounding
   constexpr double rounding = 1e-13;   // relative to the cell's size
   for (int n = 0; n < most_steps; ++n) {
     const CellPoint point = point_of(cell, start, room);

@@ -10,15 +10,15 @@
 
 namespace tessera::reference {
 
-/// A cell in the frame of one ray. x and y are coordinates along two unit vectors across the ray, z is the planar depth
-/// of the nearest place on the ray. So the ray is x = y = 0. Valid only during the lifetime of the objects to which it
-/// refers.
+/// A cell in the frame of one ray. x and y are coordinates along two unit vectors perpendicular to the ray; z is the
+/// planar depth of the nearest position on the ray. So the ray is x = y = 0. Valid only during the lifetime of the
+/// objects to which it refers.
 struct CellOnRay {
   const BernsteinBasis* basis = nullptr;
   std::span<const glm::dvec3> control;  ///< control points in the ray's frame
   std::span<const double> field;        ///< control values; empty if the field is constant
   double size = 0;      ///< longest side of the box of `control`, or more if a distant eye makes rounding larger
-  double rounding = 1;  ///< rounding of places relative to a nearby eye: about the distance in sizes, divided by four
+  double rounding = 1;  ///< rounding error of places relative to that for a nearby eye: about distance / (4 * size)
 };
 
 /// The position of a place of the cell in the ray's frame, and its derivatives with respect to the cell's own

@@ -98,15 +98,16 @@ std::pair<FacePiece, FacePiece> halves(const FacePiece& piece) {
   if (piece.triangle) return triangle_halves(piece);
   const PieceSlopes s = slopes(piece);
   const double a = longest(s.along_a), b = longest(s.along_b);
-  // Prevents slivers of the face, whose narrow side would be mistaken for a small piece: the longer side in the face
-  // decides.
+  // If one side of the piece is more than 16 times as long as the other in (u, v), it is halved. Otherwise pieces could
+  // become slivers, whose short side would be mistaken for the size of the piece.
   const double a_side = glm::length(piece.along_a), b_side = glm::length(piece.along_b);
   const bool across_a = a_side > 16 * b_side ? true : b_side > 16 * a_side ? false : a >= b;
   return square_halves(piece, across_a);
 }
 
 PiecePoint point_of(const FacePiece& piece, glm::dvec2 place) {
-  // De Casteljau's algorithm down to the last round but one, whose points also give the derivatives.
+  // Applies de Casteljau's algorithm without its last round. The points before the last round also give the
+  // derivatives.
   std::vector<glm::dvec3> p = piece.control;
   if (piece.triangle) {
     const int n = piece.a_degree;

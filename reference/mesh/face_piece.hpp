@@ -9,7 +9,7 @@
 
 namespace tessera::reference {
 
-/// A part of a face as a Bernstein patch of its own, over (a, b) in the unit square or triangle: control points as in
+/// A part of a face as a separate Bernstein patch, over (a, b) in the unit square or triangle: control points as in
 /// FacePatch, and the location of the part in the face.
 struct FacePiece {
   bool triangle = false;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double quantum = 0x1p-30;  // assumed rounding of a renderer, relative to the range
 constexpr double nothing = 1e-12;    // lower scores are ignored
-/// Largest numbers of tets, and of tets with edges, that are examined in larger meshes.
+/// Largest number of tets that are examined, and of examined tets whose edges are examined, too.
 constexpr std::size_t most_tets = 1 << 18, most_tets_with_edges = 1 << 16;
 
 /// In each cell, one of `pixels_per_mark` pixels is marked, but not more than `most_marks` pixels.
@@ -40,8 +40,8 @@ class MeshSuspects {
       const double depth = view_.project(p).depth;
       near = std::min(near, depth), far = std::max(far, std::min(depth, view_.farthest()));
     }
-    // Perspective renderers round 1/depth. If the eye is within the mesh, the near plane is arbitrary; a thousandth of
-    // the far depth is used.
+    // Perspective renderers round 1/depth. If the eye is within the mesh, the position of the near plane is arbitrary,
+    // so a thousandth of the far depth is used.
     near = std::max({near, view_.nearest(), 1e-3 * far});
     if (near < far) depth_quantum_ = quantum * (view_.perspective() ? 1 / near - 1 / far : far - near);
   }
@@ -116,8 +116,8 @@ class MeshSuspects {
     const double x = place.x / place.z, y = place.y / place.z;
     if (!(place.z > 0 && x >= 0 && y >= 0 && x < image_.size.width && y < image_.size.height)) return;
     const std::size_t pixel = image_.index(static_cast<int>(x), static_cast<int>(y));
-    // For the rounding of a depth, only light transmitted through the pixel counts; a step may be visible from the
-    // front.
+    // Scores are weighted by the light that is transmitted through the pixel. A step also counts in an opaque pixel
+    // (0.1), because it may be visible in front of the opaque part.
     const double through = 1 - std::clamp<double>(image_.rgba[4 * pixel + 3], 0, 1);
     const double along = view_.length_per_depth(x, y);
     if (by_step >= nothing)

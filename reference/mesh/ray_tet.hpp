@@ -28,21 +28,21 @@ struct Stretch {
 /// The line includes the half behind the eye.
 ///
 /// Corners  are used in lexicographic order of their world positions, so that two cells that share a face compute the
-/// same
-///          numbers on it.
-/// Decision exact, on rounded lines of sight (view.hpp). Three of them, A, B and (x, y), are in one plane if E =
-///          det[(x,y,1), A, B] = 0; the line passes through a triangle ABC iff E_ab, E_bc and E_ca have one sign.
-///          Depths and scalars are those of the unrounded corners. If E is exactly zero (the line meets the edge) the
-///          sign is that of the line shifted by (e, e^2) pixel in (x, y), e positive and infinitely small. So if cells
-///          tile space, they also tile every line, including lines through vertices, edges or in faces. Source of the
-///          idea: Edelsbrunner, Muecke, "Simulation of Simplicity", ACM TOG 1990.
+///          same numbers on it.
+/// Decision exact, on rounded lines of sight (view.hpp). The lines of sight to A, to B and through (x, y) are in one
+///          plane if E = det[(x,y,1), A, B] = 0. The line through (x, y) passes through a triangle ABC iff E_ab, E_bc
+///          and E_ca have the same sign. Depths and scalars are those of the unrounded corners. If E is exactly zero
+///          (the line meets the edge), the sign is that of the line shifted by (e, e^2) pixel in (x, y), where e is
+///          positive and infinitely small. So if cells tile space, they also tile every line, including lines through
+///          vertices, edges or in faces. Source of the idea: Edelsbrunner, Muecke, "Simulation of Simplicity", ACM TOG
+///          1990.
 /// Faces    coplanar with the eye (they project to a line) are never hit.
 /// Eye      on the cell's surface: the line then hits only one other face, and the interval ends at depth 0 at the eye.
 /// Flat     cells give intervals of length zero, up to rounding.
 std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y);
 
-/// The intersection of a line with a triangle, decided like that with a tetrahedron: of triangles that share edges,
-/// every line through their union meets exactly one. No value if there is no intersection, and if the eye is in the
+/// The intersection of a line with a triangle, decided by the same rule as for a tetrahedron: if triangles share edges,
+/// a line through their union meets exactly one of them. No value if there is no intersection, or if the eye is in the
 /// triangle's plane.
 struct TriangleHit {
   double depth, scalar;

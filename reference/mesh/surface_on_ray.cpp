@@ -21,8 +21,8 @@ using Vector = glm::vec<3, long double>;
 Vector scaled_gradient(const scene::TetMeshView& mesh, std::size_t tet) {
   const scene::Tet& t = mesh.tets[tet];
   const Vector a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]), d(mesh.positions[t[3]]);
-  // The share of each corner in the field increases along the normal of the opposite face, in proportion to the area of
-  // the face. The sum of all four is constant.
+  // The barycentric coordinate of each corner increases along the normal of the opposite face, in proportion to the
+  // area of the face. The sum of all four coordinates is constant.
   const auto above_first = [&](std::size_t i) {
     return static_cast<long double>(mesh.scalars[t[i]]) - mesh.scalars[t[0]];
   };

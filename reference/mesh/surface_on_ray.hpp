@@ -40,9 +40,10 @@ struct SurfaceCrossing {
 
 /// Returns the crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in order along the
 /// line, between two planar depths. A surface is crossed if the scalar at one end is below the surface's value and at
-/// the other end is not. For each surface the scalars are relative to its value, so that the sides are correct to the
-/// last place of a double. At an end that is `cut` by a clipping plane, a scalar counts as equal to the value if it
-/// differs by less than a part in 1e10 (tessera/selection.hpp: 1e12, which a distant ray cannot resolve).
+/// the other end is not. For each surface, scalars are computed relative to its value, so that the comparison is
+/// correct to the last place of a double. At an end that is `cut` by a clipping plane, a scalar counts as equal to the
+/// value if it differs by less than a part in 1e10. (tessera/selection.hpp uses a part in 1e12, but the error of a
+/// distant ray is larger.)
 std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
                                                const std::array<Corner, 4>& corners, double x, double y,
                                                const KeptDepths& kept);

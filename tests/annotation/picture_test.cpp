@@ -18,7 +18,7 @@ namespace {
 
 const Box box{{-1, -2, -3}, {4, 5, 6}};
 
-/// Computed independently: the pixel of a point.
+/// Returns the pixel position of a point, computed independently of the library.
 glm::dvec2 pixel_of(const View& view, const glm::dvec3& p) {
   const Camera& c = view.camera;
   const glm::dvec3 forward = glm::normalize(c.focal_point - c.position);
@@ -49,7 +49,7 @@ TEST(AnnotatedPicture, TheOutlinesEdgesAreWhereTheCameraSeesThem) {
     std::vector<char> near_an_edge(layer.depth.size());
     const glm::dvec3 forward = glm::normalize(view.camera.focal_point - view.camera.position);
     int on_picture = 0;
-    constexpr int reach = 6;  // of ink and halo, independent of the size
+    constexpr int reach = 6;  // largest distance in pixels of ink and halo from an edge, for any image size
     for (int bits = 0; bits < 8; ++bits)
       for (int axis = 0; axis < 3; ++axis) {
         if ((bits >> axis & 1) != 0) continue;
@@ -66,7 +66,8 @@ TEST(AnnotatedPicture, TheOutlinesEdgesAreWhereTheCameraSeesThem) {
               near_an_edge[layer.index(u, v)] = 1;
           if (x < 0 || y < 0 || x >= view.size.width || y >= view.size.height) continue;
           ++on_picture;
-          // A line one pixel wide through a point covers its pixel and the neighbours by one in total.
+          // The coverages of the pixel of a point and its neighbours by a line one pixel wide through the point sum to
+          // one.
           float ink = 0;
           for (int v = std::max(y - 1, 0); v <= std::min(y + 1, view.size.height - 1); ++v)
             for (int u = std::max(x - 1, 0); u <= std::min(x + 1, view.size.width - 1); ++u)
@@ -107,7 +108,8 @@ TEST(AnnotatedPicture, EdgesBehindTheDataAreSeenThroughIt) {
       const float line_light = bare.rgba[4 * i], line_alpha = bare.rgba[4 * i + 3];
       ASSERT_GT(line_alpha, 0.3);
       ++seen;
-      // Behind: P + (1 - A) L. Before: L + (1 - a) P. Floats.
+      // P and A are light and alpha of the image, L and a those of the line. A line behind the image gives P + (1 - A)
+      // L, a line in front of it L + (1 - a) P. The tolerance is that of floats.
       const float through = is_far ? 0.25F + 0.5F * line_light : line_light + (1 - line_alpha) * 0.25F;
       EXPECT_NEAR(half.rgba[4 * i], through, 1e-6);
       EXPECT_NEAR(half.rgba[4 * i + 3], is_far ? 0.5F + 0.5F * line_alpha : line_alpha + (1 - line_alpha) * 0.5F, 1e-6);
@@ -123,9 +125,10 @@ TEST(AnnotatedPicture, TheScaleBarHasTheLengthOfItsLabel) {
   struct Case {
     Camera camera;
     ImageSize size;
-    double length;  ///< world units: the longest 1, 2 or 5 times a power of ten that is at most a quarter wide
+    double length;  ///< world units: the largest 1, 2 or 5 times a power of ten within a quarter of the image's width
   };
-  // Orthographic: 2.5 pixels a unit of 800: at most 80 units. Perspective: the window at the focal point is 20 high.
+  // Orthographic: 2.5 pixels per unit, so that a quarter of 800 pixels is 80 units. Perspective: the window at the
+  // focal point is 20 units high.
   for (const Case& c : {Case{orthographic({0, 0, 1}, {}, 120), {800, 600}, 50},
                         Case{orthographic({0, 0, 1}, {}, 3e-7), {801, 600}, 2e-7},
                         Case{orthographic({0, 0, 1}, {}, 3e20), {900, 600}, 2e20},
@@ -139,7 +142,8 @@ TEST(AnnotatedPicture, TheScaleBarHasTheLengthOfItsLabel) {
       for (int x = 0; x < c.size.width; ++x) row += black_ink(layer, x, y);
       longest = std::max(longest, row);
     }
-    // From middle to middle of the end lines, half a pixel more at each side. Coverage has 8 bits.
+    // The length is measured between the centres of the end lines, which extend half a pixel further at each side.
+    // Coverage has 8 bits.
     EXPECT_NEAR(longest - 1, c.length / window * c.size.height, 0.02) << c.length;
   }
 }
@@ -175,7 +179,8 @@ TEST(AnnotatedPicture, TheColourBarHasTheTransferFunctionsColours) {
         const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(colors.size());
         const double value = logarithmic ? std::pow(10, 3 * t) : 1 + 999 * t;
         const glm::vec3 color = function.evaluate(value).color;
-        // Floats; the logarithmic value has an error of some 1e-15, colours change by 2 over 990.
+        // Colours are floats. The logarithmic value has an error of about 1e-15, and colours change by at most 2 over a
+        // range of 990.
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors[i][c], color[c], 1e-6) << i << " of " << colors.size();
       }
     }

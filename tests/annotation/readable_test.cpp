@@ -71,7 +71,7 @@ TEST(Readable, TransparentImagesAreReadableOnAnyPageAndData) {
         Image picture = plain_picture(view.size, light * alpha, alpha);
         annotate(picture, text, view, {}, {});
         const auto [low, high] = extremes(picture, page);
-        // Ink next to its halo, whatever is behind.
+        // Ink contrasts with its halo, whatever is behind them.
         EXPECT_GE(contrast(low, high), 4.5) << light << " " << alpha << " " << page;
       }
 }

@@ -92,7 +92,7 @@ TEST(Screen, ALineIsCutWhereItLeavesThePictureAndBeforeTheEye) {
   EXPECT_NEAR((*across)[0].x, -4, 1e-9);
   EXPECT_NEAR((*across)[1].x, 204, 1e-9);
   EXPECT_NEAR((*across)[0].y, 45, 1e-9);
-  // Through the eye's plane: the part in front extends to the right without end.
+  // The segment passes through the plane of the eye. Its part in front of the eye extends to the right without end.
   const auto towards = screen.segment({1, 0, 0}, {1, 0, 20}, 4);
   ASSERT_TRUE(towards);
   EXPECT_NEAR((*towards)[0].x, 105, 1e-9);

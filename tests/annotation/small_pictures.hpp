@@ -45,7 +45,8 @@ inline Image noise(ImageSize size, unsigned seed) {
   return image;
 }
 
-/// How much of a pixel black ink covers, in a layer whose halo is white: c + h (1 - c) minus h (1 - c).
+/// How much of a pixel black ink covers, in a layer whose halo is white. If c is the coverage of ink and h that of the
+/// halo, alpha is c + h (1 - c), and the light is h (1 - c).
 inline float black_ink(const Image& layer, int x, int y) {
   const float* pixel = &layer.rgba[4 * layer.index(x, y)];
   return pixel[3] - pixel[0];

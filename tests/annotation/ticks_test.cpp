@@ -48,7 +48,8 @@ TEST(Ticks, OfAnyRangeAreMultiplesOfOneRoundStepInItWithLabelsThatReadBack) {
     const int most = 2 + static_cast<int>(random() % 12);
     const std::vector<Tick> ticks = linear_ticks(low, high, most);
     ASSERT_LE(ticks.size(), static_cast<std::size_t>(most)) << low << " " << high;
-    // A step of 2 may give one tick too many where 5 gives only two fifths of them; one more for the ends.
+    // If a step of 2 gives one tick too many, the step is 5, which gives only two fifths as many ticks. One more tick
+    // may be missing because of the ends.
     ASSERT_GE(static_cast<double>(ticks.size()), std::floor(0.4 * (most - 1)) - 1 + (most == 2 ? -1 : 0))
         << low << " " << high << " " << most;
     std::set<std::string> different;
@@ -63,7 +64,7 @@ TEST(Ticks, OfAnyRangeAreMultiplesOfOneRoundStepInItWithLabelsThatReadBack) {
     ASSERT_EQ(different.size(), ticks.size()) << low << " " << high;
     if (ticks.size() < 3) continue;
     const double step = (ticks.back().value - ticks.front().value) / static_cast<double>(ticks.size() - 1);
-    // In single ticks the difference of numbers up to 1e11 steps cancels.
+    // The values of ticks may be up to 1e11 steps, so digits of their differences cancel.
     const double slack = 1e-6 + 4e-16 * std::max(std::abs(low), std::abs(high)) / step;
     const double digits = std::log10(step), part = std::pow(10, digits - std::floor(digits + slack));
     ASSERT_TRUE(std::abs(part - 1) < 10 * slack || std::abs(part - 2) < 10 * slack || std::abs(part - 5) < 10 * slack)
@@ -71,7 +72,7 @@ TEST(Ticks, OfAnyRangeAreMultiplesOfOneRoundStepInItWithLabelsThatReadBack) {
     for (const Tick& tick : ticks) {
       ASSERT_NEAR(tick.value / step, std::round(tick.value / step), slack * (1 + std::abs(tick.value / step)))
           << tick.value << " step " << step;
-      // The label equals the value to a millionth of a step, the effect of clamping to the range.
+      // The label may differ from the value by a millionth of a step, because values are clamped to the range.
       ASSERT_NEAR(std::strtod(tick.label.c_str(), nullptr), tick.value, slack * step + 4e-16 * std::abs(tick.value))
           << tick.label;
     }
@@ -121,7 +122,7 @@ TEST(Ticks, ARoundLengthIsTheLargestThatFits) {
   for (int trial = 0; trial < 5000; ++trial) {
     const double limit = std::pow(10, exponent(random)), length = round_length(limit);
     ASSERT_LE(length, limit);
-    ASSERT_GT(2.5 * length * (1 + 1e-12), limit);  // 2 to 5 is the widest gap
+    ASSERT_GT(2.5 * length * (1 + 1e-12), limit);  // the largest ratio of neighbouring lengths is 5 / 2
   }
 }
 

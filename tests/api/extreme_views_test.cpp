@@ -164,7 +164,7 @@ TEST(ExtremeFunctions, AreDrawnOrRefused) {
   }
 }
 
-// A scale of a few subnormal numbers once led to pixels of infinite size, and a NaN number of tiles.
+// Without this check, a subnormal or huge scale would lead to pixels of infinite size, and a NaN number of tiles.
 TEST(ExtremeViews, PixelsWithoutASizeAreRefused) {
   const Dataset mesh = mesh_scaled_by(1);
   Session session(mesh, {});

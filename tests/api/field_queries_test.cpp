@@ -51,12 +51,12 @@ TEST(Histogram, CountsOnlyValuesInTheRange) {
 }
 
 TEST(Histogram, GoesByTheLogarithm) {
-  // 10^(2 x): its logarithm is uniform over -2 to 2.
+  // The logarithm of 10^(2 x) is uniform over -2 to 2.
   const Dataset data = grid_of(65, [](const glm::dvec3& p) { return std::pow(10, 2 * p.x); });
   const Histogram found = histogram(data, {.bins = 8, .logarithmic = true});
   EXPECT_TRUE(found.logarithmic);
   for (const double share : found.shares) EXPECT_NEAR(share, 0.125, 0.01);
-  // A range that begins at or below 0 begins at the smallest positive value.
+  // If the field's range begins at or below 0, the histogram begins at the smallest positive value.
   const Histogram of_x = histogram(grid_of_x(), {.bins = 8, .logarithmic = true});
   EXPECT_GT(of_x.range[0], 0);
   EXPECT_NEAR(of_x.outside, 0.5, 0.02);
@@ -256,7 +256,7 @@ TEST(Probe, OfAClippedGridEndsAtThePlane) {
   EXPECT_EQ(coarse->bounds(), data.bounds());
   for (const Dataset& asked : {data, *coarse}) {
     const Histogram found = histogram(asked, {.bins = 8, .range = {{-1.0, 1.0}}});
-    // Fewer samples, each a mean, deviate by up to half of the distance between them.
+    // The preview has fewer samples, each a mean, so it deviates by up to half of the distance between samples.
     const double off = asked.format() == data.format() ? 1e-5 : 0.04;
     EXPECT_LE(found.shares[5], off);
     EXPECT_EQ(found.shares[6] + found.shares[7], 0);

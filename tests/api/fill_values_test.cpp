@@ -17,7 +17,7 @@
 namespace tessera::fill_values_test {
 namespace {
 
-/// 64 samples 0 to 63, but the first 4 are the fill value.
+/// 64 samples with the values 0 to 63, except that the first 4 have the fill value.
 std::filesystem::path volume_with(const test::TemporaryFolder& folder, float fill) {
   std::vector<float> samples = test::counting<float>(64);
   std::fill_n(samples.begin(), 4, fill);
@@ -111,7 +111,7 @@ TEST(FillValues, OfMeshesInPartsAreNotedOnceForTheWhole) {
       EXPECT_EQ(std::ranges::count_if(
                     data.notes(), [](const std::string& note) { return note.find("fill value") != std::string::npos; }),
                 1);
-      // Points between parts are in both, so they are not counted.
+      // Points on the boundary between parts are in both parts, so the number of points is not stated.
       EXPECT_EQ(note_with(data, "fill value"), of_points ? "some" + whole.substr(1) : whole);
     });
   }

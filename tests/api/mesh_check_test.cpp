@@ -95,7 +95,7 @@ TEST(MeshCheck, FindsAllPairsOfTwoMeshesThatPassThroughEachOther) {
   std::sort(pairs.begin(), pairs.end());
   const auto sampled = static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
   EXPECT_GT(sampled, 50u);
-  EXPECT_GE(check.overlaps.count, sampled);  // samples miss the small ones
+  EXPECT_GE(check.overlaps.count, sampled);  // samples miss small overlaps
   EXPECT_LE(check.overlaps.count, 3 * sampled);
 }
 
@@ -111,7 +111,7 @@ TEST(MeshCheck, FindsABodyWithinAnother) {
 TEST(MeshCheck, AVertexPushedThroughAFaceIsAFoldAndCellsOverlap) {
   scene::TetMesh mesh = datasets::regular_split(2, 2, 2);
   EXPECT_TRUE(api::check_mesh(mesh).clean());
-  // The vertex in the middle, moved beyond the next one along x.
+  // Moves the vertex in the middle beyond the next vertex along x.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(0.25)) p.x += 0.3;
   const MeshCheck check = api::check_mesh(mesh);
@@ -145,7 +145,7 @@ TEST(MeshCheck, CellsOfSeveralTetsAreCountedAndListedOncePerPair) {
 TEST(MeshCheck, ACellWhoseOwnTetsOverlapIsAPairWithItself) {
   scene::TetMesh mesh = datasets::regular_split(1, 1, 1, glm::dvec3(1));
   mesh.original_cell.assign(mesh.tets.size(), 7);
-  // A corner pushed through the cell and out the other side.
+  // Moves a corner through the cell and out of its other side.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(1, 0, 0)) p = {-0.5, 1.25, 1.5};
   const MeshCheck check = api::check_mesh(mesh);

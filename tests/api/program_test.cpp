@@ -41,7 +41,7 @@ TEST(FilmPlans, NumbersStepsTimesViewsAndRecognizesFinishedFrames) {
     EXPECT_EQ(frames[i].finished, i == 0) << i;  // frame 2 has one image missing
   }
   EXPECT_EQ(frames[3].outputs[1], folder / "f_03.pfm");
-  // Half a turn: the eye is on the other side, the box still in view.
+  // After half a turn, the eye is on the other side of the box, and the box is still in view.
   const Box box{{0, 0, 0}, {2, 2, 2}};
   const Camera first = frames[0].view(box, ProjectionKind::orthographic);
   const Camera turned = frames[1].view(box, ProjectionKind::orthographic);

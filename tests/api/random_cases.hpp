@@ -52,8 +52,9 @@ struct RandomCase {
   std::optional<Shading> shading{};
 };
 
-/// Renders each with `exact`, and automatically to 1e-4 and 1e-5, on the lattice if it can represent the scene; every
-/// fourth in double precision throughout. `excusable`: fraction of pixels that may be excused.
+/// Renders each case with `exact`, and automatically with the accuracies 1e-4 and 1e-5, on the lattice if it can
+/// represent the scene. Every fourth case is rendered in double precision throughout. The fraction 1e-4 of the pixels,
+/// plus three standard deviations, may be excused.
 template <class Make>
 void expect_random_cases_right(std::uint64_t seed, int cases, Make make) {
   constexpr scene::ImageSize size{20, 20};

@@ -188,7 +188,8 @@ TEST_P(AnyKind, AStopEndsTheFrameAndTheNextHasTheSameBits) {
   EXPECT_TRUE(session.render(view_of(data), function, {}, nullptr, before.get_token()).stopped);
 }
 
-/// The deep image of a grid is a separate pass after the flat one: a stop in it counts too, on any rank.
+/// The deep image of a grid is made in a separate pass after the flat image. A stop during this pass also ends the
+/// frame, on any rank.
 TEST(Session, AStopAfterTheLastTileEndsTheDeepPictureOfAGrid) {
   const Dataset data = dataset(Kind::grid);
   const TransferFunction function = data.transfer_function("plasma").function;
@@ -217,7 +218,7 @@ TEST_P(AnyKind, StopsAtAnyTimeLeaveTheSessionUsable) {
   const auto usual = static_cast<unsigned>(1000 * session.render(view_of(data), function).statistics.milliseconds) + 1;
   for (int i = 0; i < 60; ++i) {
     std::stop_source source;
-    // At any time: before the frame, during it or after it.
+    // The stop may be requested before the frame, during the frame or after it.
     const auto delay = std::chrono::microseconds(random() % usual);
     std::jthread stopper([&] {
       std::this_thread::sleep_for(delay);
@@ -288,7 +289,7 @@ TEST_P(AnyKind, RanksMakeTheSamePicturesAndStopTogether) {
         EXPECT_EQ(pixels.tiles, 0);
         EXPECT_TRUE(frame.image.rgba.empty());
       }
-      // A stop on the last rank, requested before it begins, stops all of a film.
+      // A stop that the last rank requests before the film begins ends the film on all ranks.
       for (int again = 0; again < 3; ++again) {
         std::stop_source source;
         if (transport.rank() == ranks - 1) source.request_stop();
@@ -369,7 +370,7 @@ class FullDisk final : public Sink {
   }
 };
 
-/// The same for a tile.
+/// Throws an Error at each tile.
 class FullPipe final : public Sink {
  public:
   void tile(const Tile& /*tile*/) override { throw Error(ErrorCode::system_failure, "client: it has gone"); }

@@ -63,7 +63,8 @@ const std::vector<Fault> faults_of_all{
 
 void shade(Settings& settings, const Shading& shading) { settings.mesh.shading = settings.grid.shading = shading; }
 const std::vector<Fault> faults_of_shading{
-    {[](Settings& s) { shade(s, {}), s.emission = Emission::independent; }, "shade", "shading needs emission"},
+    {[](Settings& s) { shade(s, {}), s.emission = Emission::independent; }, "shade",
+     "shading does not support `emission` independent"},
     {[](Settings& s) {
        shade(s, {.to_light = {0, 0, 0}});
      },
@@ -77,7 +78,7 @@ const std::vector<Fault> faults_of_meshes{
     {[](Settings& s) { s.integrator = {.kind = IntegratorKind::preintegrated, .table_size = 7}; }, "integrator",
      "8 to 512"},
     {[](Settings& s) { s.integrator.kind = IntegratorKind::partial, s.emission = Emission::independent; }, "integrator",
-     "emission by absorption"},
+     "supports only `emission` absorption"},
     {[](Settings& s) {
        s.mesh.rasterizer = Rasterizer::scanline, s.surfaces.iso = {{0.5, {}, 1}};
      },

@@ -28,8 +28,8 @@ constexpr scene::ImageSize size{256, 256};
 constexpr std::size_t looked_at = 1000;
 constexpr float wrong = 1e-3f;  // ten times the default's promise
 
-/// An image and the pixels that --verify checks. Chosen at random only, a pixel would be among a thousand with a
-/// probability of 1.5 %.
+/// An image and the pixels that --verify checks. If all pixels were chosen at random, a given pixel would be among the
+/// thousand with a probability of 1.5 %.
 struct Scene {
   scene::Image image;
   std::function<reference::Suspects(const scene::Image&)> suspects;
@@ -154,7 +154,7 @@ TEST(VerifyLooksAt, ALostBlockAtANaNBorder) {
 }
 
 TEST(VerifyLooksAt, ASmallNaNBorder) {
-  // One blank sample in smooth, thin matter: a gap of eight voxels, some 60 pixels.
+  // One blank sample in a smooth, thin medium: a gap of eight voxels, which covers about 60 pixels.
   const auto field = [](const glm::dvec3& p) {
     const double away = std::max({std::abs(p.x - 0.2), std::abs(p.y + 0.3), std::abs(p.z - 0.1)});
     return away < 1.0 / 47 ? std::numeric_limits<double>::quiet_NaN() : 0.5 + 0.1 * p.x;
@@ -175,8 +175,8 @@ TEST(VerifyLooksAt, ASmallNaNBorder) {
 }
 
 TEST(VerifyLooksAt, WrongPixelsOnTheSurfaceOfAStep) {
-  // Two plateaus a last place apart, on and below the transfer function's jump, in a small ball; all other values are
-  // far from it.
+  // Two plateaus in a small ball, whose values differ by one unit in the last place: on the transfer function's step
+  // and just below it. All other values are far from the step.
   const float step = 0.7f;
   const auto saturated = [&](const glm::dvec3& p) {
     const double r = glm::length(p - glm::dvec3(0.3, 0.2, 0));
@@ -196,7 +196,7 @@ TEST(VerifyLooksAt, WrongPixelsOnTheSurfaceOfAStep) {
       ++step_pixels;
       on_it += std::hypot(c.at.x + 0.5 - centre.x, c.at.y + 0.5 - centre.y) < 0.45 * size.height / 3.6 ? 1 : 0;
     }
-    // It covers 1,400 of 65,536 pixels.
+    // The ball covers 1,400 of 65,536 pixels.
     EXPECT_GE(step_pixels, 60);
     EXPECT_GE(on_it, step_pixels * 9 / 10);
   }
@@ -234,7 +234,7 @@ TEST(VerifyLooksAt, PixelsOnTheWrongSideOfASilhouette) {
     const std::string why = reason(scene.chosen(image), p);
     found += !why.empty() && why != "random" ? 1 : 0;
   }
-  EXPECT_GE(found, 15);  // of some 500 similar ones; 5 if nothing distinguished them, none at random
+  EXPECT_GE(found, 15);  // of 20; 5 if nothing distinguished them from about 500 similar pixels, 0 at random
 }
 
 TEST(VerifyLooksAt, EachPlateauOfColour) {

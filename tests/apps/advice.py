@@ -115,7 +115,7 @@ R --threshold 7,8 => nothing is left to render => R --threshold 0,1
 R --threshold 1 => is not two numbers; write MIN,MAX => R --threshold 0,1
 R --clip 1,2,3 => is not PX,PY,PZ,NX,NY,NZ => R --clip 0,0,0,1,2,3
 R --clip 9,0,0,1,0,0 => nothing is on the side that --clip keeps => R --clip 0,0,0,1,0,0
-R --clip 0,0,0,0,0,0 => give the side to keep => R --clip 0,0,0,0,0,1
+R --clip 0,0,0,0,0,0 => points to the side to keep => R --clip 0,0,0,0,0,1
 R --clip box:0,0,0,0,1,1 => give two opposite corners => R --clip box:0,0,0,1,1,1
 R --threshold 0,0.5 --clip 0.4,0.4,0.4,1,1,1 => move the plane => R --threshold 0,1 --clip 0.4,0.4,0.4,1,1,1
 R --clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0 => reverse the normal or move the plane => R --clip 5,0,0,-1,0,0
@@ -264,7 +264,7 @@ tessera render m.vtu -o a.jpg --size 65536x1 => write .png => S --size 65536x1
 PATH=/nowhere $program render m.vtu -o a.mp4 => write a_%04d.png => tessera render m.vtu -o a_%04d.png --size 9x9
 tessera convert m.vtu a.xyz => choose .vtu or .tets => tessera convert m.vtu a.tets
 tessera convert m.vtu a.stl => choose .vtu or .tets => tessera convert m.vtu a.tets
-tessera convert m.vtu a.pvtu => is what convert --pieces writes => tessera convert m.vtu a.pvtu --pieces 2
+tessera convert m.vtu a.pvtu => only convert --pieces writes a mesh in pieces => tessera convert m.vtu a.pvtu --pieces 2
 printf '\223NUMPY' > b.npy; tessera convert b.npy a.nrrd => write it as .raw with NumPy's tofile, or as .nrrd with pynrrd => I v.raw $raw
 tessera convert v.vti a.png => choose .vti, .vtr, .nrrd => tessera convert v.vti a.nrrd
 tessera convert m.vtu m.vtu => choose another name => tessera convert m.vtu b.vtu
@@ -498,7 +498,7 @@ BEGIN BULK => INCLUDE 'b.bdf' => it includes 'b.bdf', and there is no such file;
 0 1 0 => 0 one 0 => a PLOT3D text file contains only numbers"""),
     ("I a.xyz --q", "a.q", SOLUTION, r"""
 2 2 2 => 2 2 3 => give the solution for this grid
-1 2 3 4 5 6 7 8\n => => it is truncated or of another kind (function, OVERFLOW)"""),
+1 2 3 4 5 6 7 8\n => => it is truncated or of another kind (function file, OVERFLOW)"""),
     ("I", "a.p3d", '{"filenames": [{"xyz": "a.xyz"}]}', r"""
 [{"xyz": "a.xyz"}] => {"xyz": "a.xyz"} => check that it is ParaView's"""),
     ("I", "a.xdmf", XDMF, r"""

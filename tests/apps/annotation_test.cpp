@@ -114,7 +114,7 @@ TEST(Annotations, TheBarOfALogarithmIsLogarithmic) {
   const std::string by_default = bytes({});
   EXPECT_EQ(by_default, bytes({"--color-bar-scale", "log"}));
   EXPECT_NE(by_default, bytes({"--color-bar-scale", "linear"}));
-  // A range without a logarithm falls back to a linear one.
+  // If a range has no logarithm because it begins at 0, the scale is linear.
   EXPECT_EQ(bytes({"--color-bar-range", "0,1"}), bytes({"--color-bar-range", "0,1", "--color-bar-scale", "linear"}));
 }
 

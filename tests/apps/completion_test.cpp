@@ -71,7 +71,7 @@ TEST(Completion, WorksInBash) {
   EXPECT_EQ(offered_by_bash(folder, "render --orb", file), Words{"--orbit"});
   EXPECT_EQ(offered_by_bash(folder, "render cub", file), Words{"cube.vtu"});
   EXPECT_EQ(offered_by_bash(folder, "render cube.vtu --field ''", file), Words{"f"});
-  // bash splits --view=fr into three words, and expects only the last.
+  // bash splits --view=fr into three words, and expects completions of the last word only.
   EXPECT_EQ(offered_by_bash(folder, "render --view = fr", file), Words{"front"});
 }
 
@@ -115,7 +115,7 @@ TEST(Completion, WorksInFish) {
     std::string found, rest;
     std::getline(offered, found);
     EXPECT_TRUE(std::getline(offered, rest) && rest.empty()) << line << ": " << rest;
-    // Only the last word, without quotes.
+    // fish prints only the last word, without quotes.
     std::string word = whole.substr(line.find_last_of(' ') + 1);
     if (line.find("a\\ ") != std::string::npos) word = "a volume.nrrd";
     EXPECT_EQ(found, word) << line;

@@ -85,7 +85,7 @@ class EmptyPicture : public ::testing::Test {
   std::string cube = folder.cube();  // [-1, 1]^3
 };
 
-// Seen from the front it is in the middle of the image, between pixel centres.
+// Seen from the front, the bar is in the middle of the image, between pixel centres.
 TEST_F(EmptyPicture, OfABarBetweenPixelsNamesSizeZoomAndScale) {
   const std::string mesh = folder.file("bar.vtu", bar(0.002));
   const Names words = {"--view", "front"};

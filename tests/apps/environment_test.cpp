@@ -17,8 +17,8 @@ Outcome by_shell(const std::string& before, const std::vector<std::string>& argu
   return Running(command).wait();
 }
 
-// Output to a closed stream once went into the first file that got its number, for example a pipe of the program's own,
-// which interpreted letters as signals.
+// Without precautions, output to a closed stream would go into the first file that gets its number, for example into
+// one of the program's own pipes, which would interpret letters as signals.
 TEST(Environment, ClosedStreamsChangeNothing) {
   const Folder folder;
   const std::string mesh = folder.cube();

@@ -55,7 +55,7 @@ TEST(Faults, InvalidArgumentsNameTheOption) {
       {{"--accuracy", "1e-3", "--integrator", "exact"}, "has no effect"},
       {{"--integrator", "sampled:0"}, "sampled:N"},
       {{"--integrator", "preintegrated:1000"}, "8 to 512"},
-      {{"--integrator", "partial", "--emission", "independent"}, "emission by absorption only"},
+      {{"--integrator", "partial", "--emission", "independent"}, "supports only --emission absorption"},
       {{"--rasterizer", "spans"}, "planes, scanline or device"},
       {{"--rasterizer", "device", "--compositor", "gl-fragment", "--backend", "osmesa"}, "takes ray segments"},
       {{"--deep-accuracy", "fine", "-o", folder / "d.deep.exr"}, "--deep-accuracy: 'fine'"},

@@ -16,7 +16,7 @@ namespace tessera::apps {
 class FilmRuns : public ::testing::Test {
  protected:
   using Words = std::vector<std::string>;
-  /// Frames of a film that is ended early: all would take minutes.
+  /// Number of frames of a film that is ended early. All of them would take minutes.
   static constexpr int endless = 9999;
 
   void SetUp() override {
@@ -33,7 +33,7 @@ class FilmRuns : public ::testing::Test {
     return words;
   }
 
-  /// In one process if `ranks` is 0.
+  /// Returns the command line of a run on `ranks` ranks, or in one process if `ranks` is 0.
   static Words command(int ranks, const Words& arguments) {
     if (ranks > 0) return mpirun_command(ranks, arguments);
     Words words{TESSERA_PROGRAM};
@@ -49,7 +49,7 @@ class FilmRuns : public ::testing::Test {
     return static_cast<std::size_t>(std::distance(begin, std::filesystem::directory_iterator()));
   }
 
-  /// Waits until that many images exist; false if the run ends before.
+  /// Waits until `count` images exist. Returns false if the run ends before.
   [[nodiscard]] bool wait_for_pictures(const Running& running, std::size_t count) const {
     return test::await([&] { return pictures() >= count || !running.runs(); }) && pictures() >= count;
   }

@@ -144,7 +144,7 @@ TEST_F(GlRender, DevicesOfRanksInAnyRolesRasterizeCells) {
   const Folder folder;
   const std::string mesh = folder.cube();
   ASSERT_EQ(tessera(render_arguments(mesh, folder / "one.pfm", {"--quiet", "--integrator", "exact"})).status, 0);
-  for (const int ranks : {2, 4}) {  // with both roles, or one each
+  for (const int ranks : {2, 4}) {  // two ranks with both roles, or four with one role each
     std::vector<std::string> more{"--integrator", "exact", "--projectors", "2",          "--compositors", "2",
                                   "--tile-size",  "8",     "--compositor", "gl-compute", "--rasterizer",  "device",
                                   "--backend"};
@@ -191,8 +191,8 @@ TEST_F(GlRender, ThePresetIsThePrintedPipeline) {
   EXPECT_NE(wrong.err.find("--preset: 'juliachs' is unknown; use juliachs-2007"), std::string::npos) << wrong.err;
 }
 
-/// 1x1, 2x2 and 4x4 processes of the two roles. 16-bit values round at each segment of a list; the order of equal keys,
-/// which the paper leaves open, differs between ranks.
+/// Runs on 1, 2 and 4 projectors with as many compositors. Images differ slightly, because 16-bit values are rounded at
+/// each segment of a list, and because the order of equal keys, which the paper leaves open, differs between ranks.
 TEST_F(GlRender, ThePresetOnRanksIsOneProcess) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   const Folder folder;

@@ -15,7 +15,7 @@
 namespace tessera::apps {
 namespace {
 
-/// A child that has computed for a tenth of a second; 0: the command ended without one.
+/// Returns a child that has computed for a tenth of a second; 0 if the command ended without such a child.
 pid_t busy_child_of(const Running& running) {
   pid_t found = 0;
   std::error_code gone;
@@ -48,7 +48,7 @@ TEST(HelperEnd, AReaderProgramEndsWhenItsCallerIsKilled) {
     ASSERT_GT(helper, 0) << running.wait().err;
     ASSERT_EQ(kill(running.process(), signal), 0);
     running.wait();
-    // Its work would continue for minutes, until memory runs out.
+    // The reader program's work would continue for minutes, until memory runs out.
     const bool ends = test::await([&] { return !state_of(helper).is_alive(); });
     EXPECT_TRUE(ends) << "after signal " << signal;
     if (!ends) kill(helper, SIGKILL);

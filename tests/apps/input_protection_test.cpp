@@ -148,7 +148,7 @@ TEST(InputProtection, ConversionReplacesNoPartOfItsInput) {
   expect_refused(folder, {"convert", folder / "m.vtm", folder.cube()});
 }
 
-// An earlier version wrote it before it had examined anything.
+// All settings must be examined before the first output is written.
 TEST(InputProtection, ARefusedRunWritesNothing) {
   const Folder folder;
   const std::string mesh = folder.cube();

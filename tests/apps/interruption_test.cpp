@@ -39,7 +39,7 @@ class Mark {
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
 
-  /// Processes that have it, except zombies.
+  /// Processes that have this variable, except zombies.
   [[nodiscard]] std::vector<pid_t> processes() const {
     std::vector<pid_t> found;
     std::error_code gone;
@@ -51,7 +51,7 @@ class Mark {
     }
     return found;
   }
-  /// Whether none remain eventually: the kernel needs time to free gigabytes.
+  /// Waits until no such process remains; false if one remains. The kernel needs time to free gigabytes.
   [[nodiscard]] bool is_gone() const {
     return test::await([this] { return processes().empty(); });
   }
@@ -93,14 +93,14 @@ class AtTerminal {
   AtTerminal(const AtTerminal&) = delete;
   AtTerminal& operator=(const AtTerminal&) = delete;
 
-  /// Waits until it has printed this; false if it ends before.
+  /// Waits until the command has printed `text`. Returns false if the command ends before.
   bool shows(const std::string& text) {
     while (shown_.find(text) == std::string::npos)
       if (!read_more()) return false;
     return true;
   }
   void press_control_c() const { ASSERT_EQ(::write(terminal_, "\x03", 1), 1); }
-  /// Its status, 128 + signal if a signal ended it.
+  /// Waits for the command's end. Returns its exit status, or 128 + signal if a signal ended it.
   int wait() {
     while (read_more()) {
     }
@@ -139,8 +139,8 @@ std::string plate(const Folder& folder) {
                      "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n");
 }
 
-/// Starts the command, sends the signal once `when` is true for the marked processes, and checks what remains. The work
-/// would take many times as long.
+/// Starts the command, sends the signal once `when` is true for the marked processes, and checks what remains. Without
+/// the signal, the work would take many times as long.
 template <class When>
 void expect_clean_end(const Folder& folder, const std::vector<std::string>& arguments, int signal, const When& when) {
   SCOPED_TRACE(testing::Message() << arguments[0] << ", signal " << signal);
@@ -172,7 +172,8 @@ TEST(Interruption, EndsEveryCommandAtOnceAndLeavesNothing) {
   const std::string mesh = folder / "mesh.tets", large = folder / "large.tets";
   ASSERT_EQ(tessera({"generate", "cube", mesh, "n=4", "--quiet"}).status, 0);
   ASSERT_EQ(tessera({"generate", "cube", large, "n=30", "--quiet"}).status, 0);
-  // At once, at the beginning of its work, and during it; signals differ only in their number.
+  // The signal is sent at once, at the beginning of the command's work, or during the work. Signals differ only in
+  // their number, so not every combination is tested.
   for (const auto& [signal, moments] :
        {std::pair<int, std::vector<long>>{SIGINT, {0, 2, 30}}, {SIGTERM, {2}}, {SIGHUP, {30}}})
     for (const long ticks : moments) {
@@ -218,7 +219,7 @@ TEST(Interruption, LeavesTheFinishedPicturesOfASeriesWhole) {
 
 TEST(Interruption, StaysIgnoredWhereTheCallerHasItIgnored) {
   const Folder folder;
-  // Children inherit it, as under nohup.
+  // Children inherit the ignored signal, as under nohup.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGHUP, SIG_IGN);
   Running running(program({"generate", "cube", folder / "a.tets", "n=40", "--quiet"}));

@@ -153,7 +153,7 @@ TEST_F(Mpirun, RunsMatchTheReferenceAndTheReportHasTheJobsShape) {
   EXPECT_EQ(report.at("mesh").at("tets"), 4 * 4 * 4 * 6);
   const auto& counters = report.at("frames").at(0).at("counters");
   EXPECT_EQ(counters.at("tets_total"), 4 * 4 * 4 * 6);
-  // 24 bytes a run, 16 if it is one segment; headers are extra.
+  // A run takes 24 bytes, or 16 if it is one segment; headers are extra.
   EXPECT_GE(counters.at("exchange_bytes").get<std::uint64_t>(), 16 * counters.at("fragments").get<std::uint64_t>());
 
   // The trace contains all ranks, and the projectors' sends account for the bytes in the report.
@@ -298,7 +298,7 @@ TEST_F(Mpirun, PiecesOfCurvedCellsGiveTheBytesOfOneProcess) {
   }
 }
 
-/// Image data of cells from 0 on along each axis, as the text of a .vti.
+/// Image data with `cells` cells along each axis, as the text of a .vti.
 std::string image_text(int cells, double low, double spacing) {
   std::string values;
   for (int c = 0; c < cells * cells * cells; ++c) values += fmt::format("{} ", (c * 7) % 11);

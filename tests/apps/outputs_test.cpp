@@ -83,8 +83,8 @@ Decoded decoded(const std::string& film, std::size_t bytes_each, bool is_video) 
   return {all.out.substr(0, bytes_each), all.out.size() / bytes_each};
 }
 
-// Colours for which encoders' two matrices differ by up to 30 of 255; chroma of half the pixels, 8 bits and compression
-// change a uniform background by at most 6.
+// The background has a colour for which the two matrices of encoders differ by up to 30 of 255. Chroma in half
+// resolution, 8 bits and compression change a uniform background by at most 6.
 TEST(Outputs, FilmsOfARealFfmpegHaveAllPicturesInTheirColours) {
   if (!Running({"sh", "-c", "command -v ffmpeg"}).wait().out.ends_with("ffmpeg\n"))
     GTEST_SKIP() << "ffmpeg is not installed";

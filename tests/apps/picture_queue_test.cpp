@@ -57,12 +57,12 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   PictureQueue queue(1);
   for (int i = 0; i < 10; ++i) {
     const auto picture = std::make_shared<Picture>(held);
-    // Each is being written until two more have been handed over.
+    // Each image is being written until two more images have been handed over.
     queue.add([picture, i, &held] { EXPECT_TRUE(test::await([&] { return held == 3 || i >= left; })); });
     most = std::max(most.load(), held.load());
   }
   queue.finish();
-  EXPECT_LE(most, 3);  // plus the one being handed over
+  EXPECT_LE(most, 3);  // the third image is the one being handed over
   EXPECT_EQ(held, 0);
 }
 

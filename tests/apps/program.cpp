@@ -20,7 +20,7 @@
 namespace tessera::apps {
 namespace {
 
-/// In the child between fork and exec: `path` becomes descriptor `target`.
+/// Makes `path` the descriptor `target`, in the child between fork and exec.
 void redirect(const char* path, int flags, int target) {
   const int descriptor = open(path, flags, 0600);
   if (descriptor < 0 || dup2(descriptor, target) < 0) _exit(126);
@@ -144,7 +144,7 @@ std::map<int, pid_t> ranks_with(const std::string& word) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const auto command = words_of(entry.path() / "cmdline");
-    // Or a shell that will exec the program.
+    // The process is a rank, or a shell that will exec the rank's program.
     if (std::none_of(command.begin(), command.end(), [&](const auto& w) { return w.find(word) != std::string::npos; }))
       continue;
     for (const std::string& variable : words_of(entry.path() / "environ"))
@@ -171,7 +171,7 @@ std::vector<std::string> joined(std::vector<std::string> words, const std::vecto
 }
 
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments) {
-  // As root and on fewer cores than ranks, as in a container; leaks of Open MPI itself are not reported.
+  // Allows runs as root and with more ranks than cores, as in a container. Leaks of Open MPI itself are not reported.
   std::vector<std::string> command{"env",
                                    "OMPI_ALLOW_RUN_AS_ROOT=1",
                                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",

@@ -24,13 +24,13 @@ struct Outcome {
 
 /// Runs the built `tessera` with these arguments, without a shell and with empty standard input.
 Outcome tessera(const std::vector<std::string>& arguments);
-/// The same with standard output going to a file.
+/// Like tessera(), with standard output to a file.
 Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments);
 
-/// The same on several ranks. For tests that have checked has_mpirun().
+/// Like tessera(), on several ranks. Tests must check has_mpirun() before they call mpirun().
 bool has_mpirun();
 Outcome mpirun(int ranks, const std::vector<std::string>& arguments);
-/// The words of that command line.
+/// The words of the command line of mpirun().
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments);
 /// Concatenates two lists of words.
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
@@ -41,7 +41,7 @@ std::map<int, pid_t> ranks_with(const std::string& word);
 struct ProcessState {
   char letter = 'X';  ///< see proc(5): Z a zombie, X gone
   pid_t parent = 0;
-  long ticks = 0;  ///< of processor time in user mode
+  long ticks = 0;  ///< processor time in user mode, in clock ticks
   [[nodiscard]] bool is_alive() const { return letter != 'X' && letter != 'Z'; }
 };
 ProcessState state_of(pid_t process);
@@ -55,13 +55,13 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  /// Names of everything in it, sorted.
+  /// Names of everything in the directory, sorted.
   [[nodiscard]] std::vector<std::string> names() const;
   /// Writes a small file and returns its path.
   [[nodiscard]] std::string file(const std::string& name, const std::string& text) const;
-  /// A small generated mesh in it: 4^3 voxels of six tets.
+  /// Generates a small mesh in the directory, 4^3 voxels of six tets, and returns its path.
   [[nodiscard]] std::string cube() const;
-  /// A small rectilinear grid in it, a.vtr: 12^3 points, spacings that grow along each axis.
+  /// Generates a small rectilinear grid in the directory, a.vtr: 12^3 points, spacings that grow along each axis.
   [[nodiscard]] std::string rectilinear() const;
 
  private:
@@ -78,11 +78,11 @@ class Running {
 
   [[nodiscard]] pid_t process() const { return process_; }
   [[nodiscard]] bool runs() const;
-  /// Its standard error so far.
+  /// The command's standard error so far.
   [[nodiscard]] std::string errors() const { return contents(folder_ / "err"); }
-  /// Waits for its end. If it does not end, this is a failure, and the command is killed.
+  /// Waits for the command's end. If the command does not end, the test fails and the command is killed.
   Outcome wait();
-  /// The same for a launcher that may hang, which is not a failure.
+  /// Does the same for a launcher that may hang. A launcher that hangs is not a failure.
   Outcome wait_or_kill();
 
  private:

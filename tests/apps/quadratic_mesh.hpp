@@ -9,7 +9,7 @@
 /// Two slightly curved tets of ten nodes that share a face, as files.
 namespace tessera::test {
 
-/// One of them as the text of a .vtu: below or above the face.
+/// Returns one of the two tets as the text of a .vtu: the tet below or above the shared face.
 inline std::string quadratic_tet_text(bool above) {
   using Point = std::array<double, 3>;
   const std::array<Point, 4> corner = {
@@ -37,7 +37,7 @@ inline std::string quadratic_tet_text(bool above) {
       values, points);
 }
 
-/// A .pvtu of both, stored next to it in below.vtu and above.vtu.
+/// Returns a .pvtu of both tets, which are stored next to the .pvtu in below.vtu and above.vtu.
 inline std::string quadratic_pair_text() {
   return "<VTKFile type=\"PUnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\"><PUnstructuredGrid "
          "GhostLevel=\"0\"><PPointData><PDataArray type=\"Float64\" Name=\"f\"/></PPointData><PPoints><PDataArray "

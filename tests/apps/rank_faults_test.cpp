@@ -54,7 +54,7 @@ TEST_F(RankFaults, AStepRemovedDuringTheRunIsASystemFailure) {
       std::filesystem::copy_file(input, later);
       Running running(command(0, film(input, {later}, frames)));
       ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
-      kill(running.process(), SIGSTOP);  // it is stopped while the file is removed
+      kill(running.process(), SIGSTOP);  // the process is stopped while the file is removed
       in_time = pictures() + 8 < static_cast<std::size_t>(frames);
       std::filesystem::remove(later);
       kill(running.process(), SIGCONT);
@@ -97,11 +97,12 @@ TEST_F(RankFaults, AllRanksKilledAtOnceGiveOneLine) {
   }
 }
 
-// For ranks that their launcher kills, because one has died or because the launcher itself is killed.
+// Tests ranks that are killed by their launcher, because a rank has died or because the launcher itself is killed.
 TEST_F(RankFaults, RanksThatTheLauncherEndsGiveOneLine) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const int signal : {SIGTERM, SIGKILL}) {
-    // Otherwise Open MPI kills ranks one second after it has asked them to end, however busy the machine is.
+    // Without this variable, Open MPI kills ranks one second after it has asked them to end, however busy the machine
+    // is.
     Words words = command(3, film(inputs_[1]));
     words.insert(words.begin() + 1, "OMPI_MCA_odls_base_sigkill_timeout=10");
     Running running(words);
@@ -148,7 +149,7 @@ TEST_F(RankFaults, LongFilmsTakeNoMoreMemoryThanShortOnes) {
       clear_pictures();
       EXPECT_GT(early, 0);
       EXPECT_GT(late, 0);
-      // Records of 3 KB a frame would be 3,000.
+      // Records of 3 KB per frame would take 3,000 KiB.
       EXPECT_LT(late - early, 1000) << input << " on " << ranks;
     }
 }

@@ -68,8 +68,8 @@ TEST_F(RankLimits, UnderAMemoryLimitOneLineGivesTheRemedy) {
     }
 }
 
-// If MPI does not start, only its report and the launcher's are printed, and Open MPI 4.1.4's launcher may hang at its
-// own end; each rank prints at most one line, and all end.
+// If MPI does not start, only its report and the launcher's report are printed, and the launcher of Open MPI 4.1.4 may
+// hang at its own end. Each rank prints at most one line, and all ranks end.
 TEST_F(RankLimits, UnderAMemoryLimitRanksEndWhereverTheyDie) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take all address space";
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";

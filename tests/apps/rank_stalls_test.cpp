@@ -19,10 +19,10 @@ class RankStalls : public FilmRuns {
     FilmRuns::SetUp();
   }
 
-  /// Stops a rank during a film of `frames` images until it has been reported; returns its process, or 0 if the film
-  /// ended too soon.
+  /// Stops a rank during a film of `frames` images until the stall has been reported. Returns the rank's process, or 0
+  /// if the film ended too soon.
   pid_t stop_and_go_on(const Running& running, int ranks, int stopped, int frames) {
-    // By then each rank has received the others' first heartbeat, which contains their process id.
+    // After 20 images, each rank has received the other ranks' first heartbeats, which contain their process ids.
     if (!wait_for_pictures(running, 20)) return 0;
     const auto all = ranks_with(pictures_);
     if (!all.contains(stopped)) return 0;
@@ -72,7 +72,7 @@ TEST_F(RankStalls, AStoppedRankIsNamedAndWaitedFor) {
 
 TEST_F(RankStalls, AStoppedRankEndsTheRunOnRequest) {
   for (const auto& [input, ranks, stopped] : {std::tuple(inputs_[0], 2, 0), std::tuple(inputs_[1], 4, 3)}) {
-    // Ten seconds: no running rank is silent for that long, however busy the machine is.
+    // The timeout is ten seconds: no running rank is silent for that long, however busy the machine is.
     Running running(command(ranks, film(input, {"--stall-timeout", "10", "--on-stall", "abort"})));
     ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
     kill(ranks_with(pictures_).at(stopped), SIGSTOP);
@@ -88,7 +88,7 @@ TEST_F(RankStalls, AStoppedRankEndsTheRunOnRequest) {
 
 TEST_F(RankStalls, ARankThatComputesForLongIsNotStopped) {
   constexpr double timeout = 4;
-  // Only the first rank verifies: more and more pixels, until that takes longer than the stall timeout.
+  // Only the first rank verifies. The number of pixels grows until verification takes longer than the stall timeout.
   double verified = 0;
   for (int pixels = 60000; verified < 1.5 * timeout; pixels *= 2) {
     const Outcome outcome =

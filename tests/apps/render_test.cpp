@@ -86,7 +86,7 @@ TEST(Render, AcceptsJsonInsteadOfAFilesName) {
   EXPECT_EQ(contents(folder / "v0.png"), contents(folder / "a.png"));
   EXPECT_NE(contents(folder / "v1.png"), contents(folder / "a.png"));
 
-  // A text longer than any file name.
+  // The texts are longer than any file name.
   EXPECT_EQ(render("c.png", near + std::string(5000, ' '), function + std::string(5000, ' ')).status, 0);
   for (const auto& [camera, colors, words] :
        {std::array<std::string, 3>{R"({"position": [1, 2]})", function, "tessera: --camera: "},
@@ -290,7 +290,8 @@ TEST(Render, WritesADeepImageInAdditionToAFlatOne) {
   const auto run = tessera({"render", mesh, "-o", folder / "a.deep.exr", "-o", folder / "a.exr", "--size", "30x20",
                             "--deep-accuracy", "1e-2", "--report", folder / "r.json"});
   ASSERT_EQ(run.status, 0) << run.err;
-  // In addition to a deep image the flat one is made in double precision: not the same bits, but the same image.
+  // If a deep image is written, too, the flat image is computed in double precision. Its bits differ, but it is the
+  // same image within the tolerance.
   const scene::Image beside = io::read_image(folder / "a.exr"), alone = io::read_image(folder / "alone.exr");
   ASSERT_EQ(beside.rgba.size(), alone.rgba.size());
   for (std::size_t i = 0; i < alone.rgba.size(); ++i) ASSERT_NEAR(beside.rgba[i], alone.rgba[i], 2e-6);
@@ -306,7 +307,7 @@ TEST(Render, ProgressIsATemporaryLine) {
       tessera({"render", folder.cube(), "-o", folder / "%d.pfm", "--size", "8x8", "--orbit", "2", "--progress"});
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.err.find("frame 2 of 2"), std::string::npos);
-  EXPECT_EQ(run.error_lines(), 3u);  // for the run, and for each frame
+  EXPECT_EQ(run.error_lines(), 3u);  // one for the run, and one for each frame
   EXPECT_TRUE(run.err.ends_with("\x1b[K"));
 }
 
@@ -347,7 +348,7 @@ TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
   const auto lattice = render("lattice");
   EXPECT_EQ(lattice["frames"][0]["arithmetic"], "double");
   const auto termination = render("termination");
-  // The number of segments saved by termination differs between builds; without it the counts are the same.
+  // The number of segments that termination saves differs between builds, so termination is disabled in both runs.
   EXPECT_GT(counter(render("culling,termination"), "segments"), counter(termination, "segments"));
   EXPECT_LE(termination["frames"][0]["verify"]["max_error"], all["frames"][0]["verify"]["max_error"]);
   render("culling,skipping,termination,lattice,sharing,merging");

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Rank N runs in the directory N of `folder`.
+/// Runs the program on two ranks. Rank N runs in the directory N of `folder`.
 Outcome in_own_folders(const Folder& folder, const Words& arguments) {
   Words command = mpirun_command(2, {});
   command.pop_back();
@@ -71,7 +71,7 @@ TEST_F(SameFiles, ReportsDifferentPieces) {
   expect_reported({"render", "p.pvtu", "-o", "a.png", "--size", "16x16"}, "p_0001.vtu");
 }
 
-// They once waited for each other's cells without end.
+// Without this check, the ranks would wait for each other's cells without end.
 TEST_F(SameFiles, ReportsDifferentVolumes) {
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
   for (const auto& [rank, n] : {std::pair{"0", 8}, std::pair{"1", 6}}) {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
-/// As a function of a point's x from 0 to 1.
+/// Values of a field as a function of a point's x, which is scaled to 0 to 1.
 using Values = std::function<double(double)>;
 
 struct Field {
@@ -136,7 +136,7 @@ TEST_F(SeriesDefaults, ExamineFiveStepsAtMostAndWarnOfOthers) {
   const Outcome run = tessera(film(pvd));
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find(
-                "note: field p and its colors are chosen by time steps 0, 3, 6, 9 and 12 of 0 to 12, where it is from "
+                "note: field p and its colours are chosen by time steps 0, 3, 6, 9 and 12 of 0 to 12, where it is from "
                 "0 to 1"),
             std::string::npos)
       << run.err;
@@ -170,7 +170,8 @@ TEST_F(SeriesDefaults, ReportsAnUnreadableStepWhenItIsReached) {
 TEST_F(SeriesDefaults, InfoListsStepsAndTimes) {
   write({{{"p", times(1)}}, {{"p", times(1)}}, {{"p", times(1)}}});
   const Outcome text = tessera({"info", pvd});
-  EXPECT_NE(text.out.find("steps     3, at times 0, 0.25, 0.5; below step 0 of 0 to 2\n"), std::string::npos)
+  EXPECT_NE(text.out.find("steps     3, at times 0, 0.25, 0.5; the lines below are for step 0 of 0 to 2\n"),
+            std::string::npos)
       << text.out;
   EXPECT_EQ(info_of(pvd, {"--time-step", "2"}).at("time_steps"),
             Json({{"count", 3}, {"step", 2}, {"times", {0, 0.25, 0.5}}, {"range", nullptr}}));
@@ -190,7 +191,7 @@ TEST_F(SeriesDefaults, NumberedFilesHaveTheTimesThatTheyState) {
     (void)folder.file(fmt::format("t_{}.vtu", step), text);
   };
   write_at(7, R"(<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii"> 0.125 </DataArray>)");
-  // The bytes of 0.5 after their length.
+  // The base64 text contains the number of bytes, and then the bytes of 0.5.
   write_at(8, R"(<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="binary" RangeMin="0.5" )"
               R"(RangeMax="0.5">CAAAAAAAAAAAAOA/</DataArray>)");
   EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("times"), Json({0.125, 0.5}));
@@ -216,7 +217,7 @@ TEST_F(SeriesDefaults, LegacyFilesAndListsOfPiecesHaveTheTimesThatTheyState) {
   (void)folder.file("l_7.vtk", ascii);
   (void)folder.file("l_8.vtk", binary);
   EXPECT_EQ(info_of(folder / "l_%d.vtk").at("time_steps").at("times"), Json({0.125, 0.5}));
-  // The same in a list of files, whose times would otherwise be their indices.
+  // Files in a list have the times that they state, too, instead of their indices.
   Names list = film(folder / "l_8.vtk");
   list.insert(list.begin() + 1, folder / "l_7.vtk");
   EXPECT_EQ(tessera(list).status, 0);

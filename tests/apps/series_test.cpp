@@ -77,7 +77,7 @@ TEST_F(Series, TheViewIsTheFirstStepsForAll) {
   const auto run = tessera(arguments({pattern}, "f_%d.pfm", {"--report", folder / "report.json"}));
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find("; the view of the first of 3 time steps, "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("note: field f and its colors are chosen by time steps 0, 1 and 2 of 0 to 2"),
+  EXPECT_NE(run.err.find("note: field f and its colours are chosen by time steps 0, 1 and 2 of 0 to 2"),
             std::string::npos);
   const auto report = nlohmann::json::parse(contents(folder / "report.json"));
   ASSERT_EQ(report.at("frames").size(), 3u);
@@ -102,7 +102,7 @@ TEST_F(Series, ResumeReadsNoMeshWhoseFramesExist) {
   ASSERT_EQ(tessera(resume).status, 0);
   const std::string last = contents(folder / "f_2.pfm");
   std::filesystem::remove(folder / "f_2.pfm");
-  std::filesystem::remove(meshes[1]);  // finished; the first is needed for view and transfer function
+  std::filesystem::remove(meshes[1]);  // its frame exists; the first mesh is needed for view and transfer function
   const auto run = tessera(resume);
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(contents(folder / "f_2.pfm") == last);
@@ -124,7 +124,8 @@ TEST_F(Series, PartsOfATimestepAreOneMesh) {
 }
 
 TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
-  // The field is chosen among those that vary. A later step that lacks it is reported before any image is rendered.
+  // The field is chosen among those that vary. A later step without this field is reported before any image is
+  // rendered.
   const auto rename = [&](const std::string& mesh) {
     const auto text = contents(mesh);
     std::string changed = text;

@@ -83,8 +83,8 @@ class SharedVolumes : public ::testing::Test {
     return file;
   }
 
-  /// The command line on `ranks` ranks, whose temporary files go to `scratch`; mpirun puts its own elsewhere. `first`
-  /// runs in each rank's shell before.
+  /// Returns the command line on `ranks` ranks, whose temporary files go to `scratch`; mpirun's own temporary files go
+  /// elsewhere. The shell of each rank executes `first` before the program.
   [[nodiscard]] static Words on_ranks(int ranks, const std::string& scratch, const Words& arguments,
                                       const std::string& first = ":") {
     Words words = mpirun_command(ranks, arguments);
@@ -159,13 +159,13 @@ TEST_F(SharedVolumes, AreAnnouncedOnce) {
   EXPECT_EQ(nlohmann::json::parse(contents(folder_ / "r.json")).at("volume").at("notes").size(), 1u);
   const Outcome quiet = Running(on_ranks(3, scratch_, render(volume, folder_ / "a.pfm", {"--quiet"}))).wait();
   EXPECT_EQ(count_of(quiet.err, "tessera") + count_of(quiet.err, "note"), 0u) << quiet.err;
-  // No other process needs them.
+  // No other process needs the samples.
   EXPECT_EQ(count_of(Running(on_ranks(1, scratch_, words)).wait().err, "read as a whole"), 0u);
   EXPECT_EQ(count_of(tessera(words).err, "read as a whole"), 0u);
 }
 
 TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithAWorkingRemedy) {
-  // 27 MB, more than the limit, which still includes the memory shared by MPI's ranks.
+  // The volume has 27 MB, which is more than the limit. The limit is large enough for the memory shared by MPI's ranks.
   const std::string volume = zipped(300), missing = folder_ / "nowhere";
   const Words words = render(volume, folder_ / "a.pfm", {"--quiet"});
   for (const int ranks : {2, 3})
@@ -196,7 +196,7 @@ TEST_F(SharedVolumes, LeaveNothingWhenARankIsEnded) {
   const std::string volume = zipped(400);
   int number = 0;
   test::SomeCases some(3);
-  // While the leader writes; once another reads.
+  // The signal is sent while the leader (rank 0) writes, or once another rank (2) reads.
   for (const int opened : {0, 2})
     for (const int signal : {SIGKILL, SIGTERM})
       for (const int ended : {0, 1}) {
@@ -237,14 +237,15 @@ TEST_F(SharedVolumes, AreInNoRanksMemoryAsAWhole) {
   ASSERT_EQ(ranks.size(), 3u);
   for (const auto& [rank, process] : ranks) {
     EXPECT_GT(peak_of(process), 0);
-    // 28 MiB of it are the program and MPI: holding the volume once would exceed it by far.
+    // The program and MPI take 28 MiB of the budget. Holding the volume once would exceed the budget by far.
     EXPECT_LT(peak_of(process), budget) << rank;
   }
   kill(running.process(), SIGTERM);
   running.wait();
 }
 
-/// Status, and the largest peak memory of all processes that it has waited for, KiB.
+/// Runs a command. Returns its status, and the largest peak memory, in KiB, of the command and of all processes for
+/// which it has waited.
 std::pair<int, long> peak_of(const Words& command) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -269,13 +270,13 @@ TEST_F(SharedVolumes, InFormatsThatAreUnpackedFitTheBudgetOfOneProcess) {
   EXPECT_EQ(small.first, 0);
   EXPECT_EQ(large.first, 0);
   EXPECT_LE(small.second, 64l << 10);
-  EXPECT_GT(large.second, 400l * 400 * 400 / 1024);  // with enough memory it stays in memory
+  EXPECT_GT(large.second, 400l * 400 * 400 / 1024);  // with enough memory, the samples stay in memory
   EXPECT_EQ(contents(folder_ / "small.pfm"), contents(folder_ / "large.pfm"));
 }
 
 TEST_F(SharedVolumes, InASmallPictureKeepTheBudget) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-  // A tile of 32 x 32 pixels covers almost all of it: 20 MiB of samples at a time.
+  // A tile of 32 x 32 pixels covers almost all of the volume: 20 MiB of samples at a time.
   const std::string volume = folder_ / "v_400x400x400_uint8.raw";
   {
     std::ofstream out(volume, std::ios::binary);

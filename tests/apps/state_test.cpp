@@ -30,7 +30,7 @@ std::string picture_of(const State& state, const Files& files) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// `state` for this file after conversion to values and back.
+/// Returns `state` for these files after conversion to values and back.
 State by_values(const State& state, const Files& files) {
   const Dataset data = state.open(files);
   const DataKind kind = data.is_grid() ? DataKind::grid : DataKind::mesh;
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"raw", R"({"dims":"6x5x4","type":"uint16","spacing":"1,0.5,2","origin":"-1,0,1e3","labels":"off"})"},
         Case{"raw", R"({"dims":"5x5x4","type":"uint16","endian":"big","skip":40,"labels":"on"})"}));
 
-/// Every option of `render` whose text a value stores verbatim, with a text other than the default.
+/// Tests every option of `render` whose text is stored verbatim in a value, with a text other than the default.
 TEST(State, HasTheWordsOfEveryValue) {
   const Folder folder;
   const State of_meshes = State::from_json(R"({
@@ -152,7 +152,7 @@ TEST(State, HasTheWordsOfEveryValue) {
   EXPECT_EQ(result.json(), written.json());
   for (const auto& [option, words] : written.words()) stated.insert(option);
 
-  // Options that become a camera, a transfer function or a title, and those that are not values of these.
+  // Options that become a camera, a transfer function or a title, and options that do not belong to any value.
   stated.insert({"view", "up", "azimuth", "elevation", "zoom", "fit", "orbit", "size", "projection"});
   stated.insert({"rescale", "unit-distance", "opacity", "range", "log", "opacity-points", "field-unit"});
   stated.insert({"input",  "more",          "output",   "frame-rate",    "peel",   "resume",      "report",

@@ -76,7 +76,7 @@ TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
       << run.err;
 }
 
-// It changes the meaning of the image.
+// The warning is printed even with --quiet, because it changes the meaning of the image.
 TEST(Surfaces, PrintsWarningsWithQuiet) {
   const Folder folder;
   const Outcome run =

@@ -234,7 +234,7 @@ TEST(Breakdown, ARankHasTheRolesOfItsFrames) {
 }
 
 TEST(Breakdown, EfficiencyIsTheRateACoreAgainstTheSmallestRunOfTheSameMesh) {
-  // Twice the processes: frames are twice as fast, then a quarter slower than that.
+  // With twice the processes, frames take half the time in one run, and a quarter more than that in another run.
   std::vector<analysis::RunTime> runs = {run_of({4, 4, false, 20, 50, 50, 0}), run_of({2, 2, false, 20, 100, 100, 0}),
                                          run_of({4, 4, false, 20, 62.5, 62.5, 0})};
   TracedPipeline other{1, 1, false, 20, 100, 100, 0};

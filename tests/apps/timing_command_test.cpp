@@ -72,7 +72,7 @@ TEST(Timing, CsvHasALineForEachStageOfEachRoleAndRun) {
     EXPECT_NE(line.find("a, \"\"b\"\".json\","), std::string::npos);
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns + 1) << line;  // one in the name
   }
-  // 8 stages of projectors, 6 of compositors, for each other, whole and read.
+  // 8 stages of projectors and 6 stages of compositors; for each role also `other`, `whole` and `read`.
   EXPECT_EQ(count, 8 + 6 + 2 * 3);
 }
 

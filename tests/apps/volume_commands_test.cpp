@@ -51,8 +51,8 @@ TEST(VolumeCommands, AShadedPictureIsVerifiedToo) {
   }
 }
 
-/// Along the diagonal of a voxel with alternating corners the field is an odd cubic: its values in the middle and at
-/// both ends do not reveal its range between.
+/// Along the diagonal of a voxel with alternating corners, the field is an odd cubic: its values in the middle and at
+/// both ends do not reveal its range between these positions.
 TEST(VolumeCommands, BumpsInsideAVoxelAreSeenThroughASteepFunction) {
   const Folder folder;
   ASSERT_EQ(tessera({"generate", "checker", folder / "k.vti", "n=2", "--quiet"}).status, 0);
@@ -111,7 +111,8 @@ TEST(VolumeCommands, RectilinearGridsAreVolumesToo) {
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   const auto report = nlohmann::json::parse(contents(folder / "r.json"));
   EXPECT_TRUE(report["volume"]["rectilinear"]);
-  // 1e-5 of the lines, plus what rays omit that end at a transmittance of a quarter of 1e-4.
+  // 1e-5 for approximation by lines, plus 2.5e-5 for light that is omitted because rays end at a transmittance of a
+  // quarter of 1e-4.
   EXPECT_LT(report["frames"][0]["verify"]["max_error"], 3.5e-5);
   const Outcome stepped = tessera({"render", grid, "-o", folder / "b.exr", "--integrator", "sampled"});
   EXPECT_EQ(stepped.status, 2);
@@ -129,7 +130,8 @@ TEST(VolumeCommands, InfoPrintsTheContentsOfAVolume) {
 }
 
 TEST(VolumeCommands, TheReportOfAPictureListsWhatInfoLists) {
-  // Ranges come from two scans, that of info and the renderer's, which agree on blanks, components and lengths.
+  // Ranges are computed by two scans, one of info and one of the renderer, which must agree on blanks, components and
+  // lengths.
   const Folder folder;
   std::vector<float> numbers;
   for (int i = 0; i < 3 * 13 * 12 * 11; ++i)

@@ -179,7 +179,7 @@ TEST_F(VolumeMpirun, ASeriesBrokenOffAndResumedHasTheBytesOfOneRun) {
     return render(folder_ / name, {folder_ / "w.nrrd", "--camera", path, "--resume"});
   };
   ASSERT_EQ(mpirun(3, film("whole_%d.exr")).status, 0);
-  // As left by a run that ended within its second time step: images appear whole or not at all.
+  // These files are left by a run that ended within its second time step; an image is either complete or missing.
   for (const char* number : {"0", "1", "2"})
     std::filesystem::copy_file(folder_ / "whole_" + number + ".exr", folder_ / "part_" + number + ".exr");
   std::filesystem::remove(volume_);  // a step whose images all exist is not read, except for the defaults of the first
@@ -212,7 +212,7 @@ TEST_F(VolumeMpirun, FaultsAreOneLineInAllAndLeaveNothing) {
   const Outcome flat = mpirun(2, {"render", folder_.file("x_9x9x9_uint8.raw", "short"), "-o", folder_ / "a.png"});
   EXPECT_EQ(flat.status, 2);
   EXPECT_EQ(own_lines(flat), 1u) << flat.err;
-  // Facts that only all ranks together know.
+  // Only all ranks together know that all samples are blank.
   const std::string nothing(std::size_t{4} * 9 * 9 * 40, '\xff');  // NaN
   const Outcome blank = mpirun(3, {"render", folder_.file("n_9x9x40_float32.raw", nothing), "-o", folder_ / "a.png"});
   EXPECT_EQ(blank.status, 2);

@@ -48,14 +48,14 @@ void render(MPI_Comm two, int rank) {
   };
   whole(session, "the picture has other bits than one process's");
   whole(other, "a second session's picture has other bits");
-  // Stops from either rank, before it begins and from the sink.
+  // Either rank requests a stop before the frame begins. Below, the sink requests a stop.
   for (int stopping_rank = 0; stopping_rank < 2; ++stopping_rank) {
     std::stop_source source;
     if (rank == stopping_rank) source.request_stop();
     expect(session.render(view, function, {}, nullptr, source.get_token()).stopped, "it was not stopped on all ranks");
     whole(session, "the picture after a stop has other bits");
   }
-  // For an image so large that its tiles are sent in many messages.
+  // The image is so large that its tiles are sent in many messages.
   const tessera::View large = data.default_view({1600, 1200});
   StopAtFirstTile sink;
   expect(session.render(large, function, {}, &sink, sink.source.get_token()).stopped,

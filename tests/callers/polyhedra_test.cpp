@@ -67,10 +67,11 @@ TEST(CallersPolyhedra, OmitsOpenPolyhedraWithAWarning) {
 TEST(CallersPolyhedra, RefusesInvalidFacesWithTheirPlace) {
   House house;
   house.faces[4] = 9;
-  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron with point 9 in a face, of 9 points"), std::string::npos)
+  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron with point 9 in a face, but there are only 9 points"),
+            std::string::npos)
       << house.fault();
   house = House(), house.faces[0] = 6;
-  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron of 6 faces whose lists end after"), std::string::npos);
+  EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron with 6 faces, whose lists end after"), std::string::npos);
   house = House(), house.faces[5] = -1;
   EXPECT_NE(house.fault().find("mesh: number of faces 5 is -1"), std::string::npos);
   house = House(), house.locations[1] = 22;

@@ -366,8 +366,9 @@ TEST(CallersErrors, AnyExceptionHasAnError) {
 }
 
 #ifdef TESSERA_VTK
-/// A block of `n` cells of size 1 / `parts` from cell `first` on, along each axis: a VTK structured or regular grid,
-/// with a linear point field p and a cell field c, `cell_at` of the cells' centres.
+/// Writes a block as a VTK structured or regular grid. Along each axis, the block has `n` cells of size 1 / `parts`,
+/// from cell `first` on. It has a linear point field p, and a cell field c with the value `cell_at` of the cells'
+/// centres.
 void write_block(const fs::path& file, bool structured, int parts, int first, int n,
                  const std::function<double(std::array<double, 3>)>& cell_at) {
   std::ofstream out(file);
@@ -400,7 +401,7 @@ void write_block(const fs::path& file, bool structured, int parts, int first, in
 
 TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
   const Folder folder;
-  // Cells per side of a block: 4 of size one, 4 of half, 4 of a quarter; at one corner the level changes by two.
+  // Each block has 4 cells per side, of size one, a half or a quarter. At one corner, the level changes by two.
   struct Block {
     int level, parts, first, n;
   };

@@ -25,8 +25,8 @@ bool on_box(const testing::TrianglePlace& t) {
 /// Inside, every triangle belongs to two tets; on the box, to one. This is the meaning of "no gap, no overlap".
 void expect_conforming(const scene::TetMesh& mesh) {
   for (const auto& [place, uses] : count_triangles(mesh)) EXPECT_EQ(uses, on_box(place) ? 1 : 2);
-  // The cells tile the box, however warped the faces are; tolerance for rounding of some 1e4 determinants of order
-  // 1e-3.
+  // The cells tile the box, however warped the faces are. The tolerance is for rounding of about 1e4 determinants of
+  // order 1e-3.
   EXPECT_NEAR(testing::volume(mesh), 1.0, 1e-12);
 }
 
@@ -44,7 +44,7 @@ TEST_P(Mixed, NeighboursAgreeByPositionIfTheyShareNoIndex) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Mixed, ::testing::Range(1u, 9u));
 
-/// A prism over a regular polygon in layers, each numbered from another corner.
+/// A prism over a regular polygon, divided into layers. Each layer is numbered from another corner.
 TEST(SplitCell, PrismsOverPolygonsAgreeHoweverTheyAreNumbered) {
   std::mt19937 random(3);
   for (const int n : {5, 6})

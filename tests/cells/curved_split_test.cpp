@@ -34,7 +34,7 @@ using testing::place_of;
 using testing::Warp;
 using testing::warped_box;
 
-/// A random point of a cell's own coordinates, in units.
+/// A random point in a cell's own coordinates, in units of 1 / cells::cell_unit.
 cells::CellPlace random_place(cells::CurvedFamily family, std::mt19937& random) {
   std::uniform_int_distribution<std::int32_t> number(0, cells::cell_unit);
   for (;;) {
@@ -85,7 +85,7 @@ TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
       const cells::CellPlace place = random_place(lattice->family, random);
       const glm::dvec4 found = cell.at(place, 0);
       const glm::dvec3 x = glm::dvec3(place[0], place[1], place[2]) / static_cast<double>(cells::cell_unit);
-      EXPECT_NEAR(found.x, x.x, 1e-12);  // positions are the identity, also a polynomial
+      EXPECT_NEAR(found.x, x.x, 1e-12);  // positions are the identity, which is also a polynomial
       EXPECT_NEAR(found.z, x.z, 1e-12);
       EXPECT_NEAR(found.w, f(x), 1e-11);
     }
@@ -108,7 +108,7 @@ TEST(CurvedCell, HasItsNodesAtTheLatticePoints) {
     cell.set(*lattice, positions, values);
     for (std::size_t k = 0; k < kind.nodes; ++k) {
       cells::CellPlace place;
-      bool is_whole = true;  // a third cannot be represented in units
+      bool is_whole = true;  // false for example for a third, which is not a multiple of the unit
       for (std::size_t x = 0; x < 3; ++x) {
         const int steps = lattice->order[x] * lattice->refined;
         is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cells::cell_unit % steps == 0;
@@ -154,8 +154,8 @@ ReadOptions tolerance(double relative) {
   return options;
 }
 
-/// Triangles used once must enclose the tets' volume: a crack would appear as edges that do not separate two of them,
-/// or as more surface than a ball has.
+/// Triangles used once must enclose the tets' volume. A crack would add edges of this surface that are not between two
+/// of its triangles, or more surface than a ball has.
 void expect_closed_ball(const scene::TetMesh& mesh) {
   std::size_t inside = 0, once = 0;
   std::map<std::array<testing::Point, 2>, int> rim;
@@ -173,14 +173,14 @@ void expect_closed_ball(const scene::TetMesh& mesh) {
   for (const auto& [edge, uses] : rim) inside += uses != 2;
   EXPECT_GT(once, 0u);
   EXPECT_EQ(inside, 0u) << "edges of the surface that are not between two triangles";
-  // Cracks would also add surface: the Euler characteristic determines its number of parts.
+  // A crack may also be a separate closed surface. The Euler characteristic is 2 only for the surface of one ball.
   std::map<testing::Point, int> corners;
   for (const auto& [edge, uses] : rim) ++corners[edge[0]], ++corners[edge[1]];
   EXPECT_EQ(static_cast<long>(corners.size()) - static_cast<long>(rim.size()) + static_cast<long>(once), 2)
       << "the surface is not one ball's";
 }
 
-/// Many tets per cell, few enough for builds with sanitizers.
+/// A tolerance that gives many tets per cell, but few enough for builds with sanitizers.
 constexpr double coarse = 6e-2;
 
 void expect_one_ball(std::vector<cells::CellBlock> blocks) {
@@ -194,7 +194,7 @@ TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
   test::SomeCases some(5);
   for (const Kind& kind : kinds)
-    for (const double relative : {1e-1, 6e-2})  // each cell decides on its own; some faces just need a division
+    for (const double relative : {1e-1, 6e-2})  // each cell is divided separately; some faces barely need a division
       for (const bool turned : {false, true}) {
         if (!some.next()) continue;
         SCOPED_TRACE(fmt::format("{}, {} nodes, {}{}", kind.type, kind.nodes, relative, turned ? ", turned" : ""));
@@ -207,7 +207,7 @@ TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
       }
 }
 
-/// The largest difference between the field of tets and `truth` at random points of them.
+/// The largest difference between the field of tets and `truth` at random points in the tets.
 double worst_difference(const scene::TetMesh& mesh, const Field& truth, int points_a_tet) {
   std::mt19937 random(5);
   std::exponential_distribution<double> weight;
@@ -294,7 +294,7 @@ TEST(CurvedSplit, LoosensItsToleranceWhereThatTakesTooManyTets) {
 }
 
 TEST(CurvedSplit, FillsWhatTheCellsFill) {
-  // A box bent by a map that quadratic cells represent exactly: the integral of (1 + 0.4 x) (1 + 0.2 z).
+  // A box bent by a map that quadratic cells represent exactly. Its volume is the integral of (1 + 0.4 x) (1 + 0.2 z).
   const Warp bend = [](const glm::dvec3& p) { return glm::dvec3(p.x + 0.2 * p.x * p.x, p.y + 0.2 * p.y * p.z, p.z); };
   const Field one = [](const glm::dvec3&) { return 1.0; };
   test::SomeCases some(5);
@@ -304,14 +304,14 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
       if (!some.next()) continue;
       const cells::MeshFile file =
           cells::assemble_mesh({warped_box(kind, 1, bend, one, false)}, tolerance(relative), "mesh");
-      // The deviation of the surface, of area 6.9, is nowhere larger.
+      // The surface has an area of 6.9, and deviates by at most `position_error` everywhere.
       EXPECT_NEAR(testing::volume(file.mesh), 1.32, 7 * file.higher_order.position_error);
       EXPECT_LE(file.higher_order.position_error, 2 * relative);  // the diagonal is 2
     }
   }
 }
 
-/// As stored by a writer of rational cells.
+/// Adds weights to the nodes in the form in which writers of rational cells store them.
 void add_weights(cells::CellBlock& block, const std::function<double(const glm::dvec3&)>& weight) {
   std::vector<double> weights;
   for (const glm::dvec3& p : block.positions) weights.push_back(weight(p));
@@ -327,7 +327,7 @@ cells::CellBlock quarter_tube() {
     const double radius = 1 + p.y;
     const glm::dvec2 control[3] = {{radius, 0}, {radius, radius}, {0, radius}};
     const glm::dvec2 at = control[static_cast<int>(std::lround(2 * p.x))];
-    return glm::dvec3(at.x, at.y, -p.z);  // with r, s, t rotated
+    return glm::dvec3(at.x, at.y, -p.z);  // -z, so that r, s, t are right-handed
   };
   cells::CellBlock block = warped_box(kind, 1, tube, height, false);
   add_weights(block, [](const glm::dvec3& p) { return p.x == p.y ? std::sqrt(0.5) : 1; });
@@ -341,7 +341,7 @@ TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
     const cells::MeshFile file = cells::assemble_mesh({quarter_tube()}, tolerance(relative), "mesh");
     EXPECT_EQ(file.higher_order.by_corners, 0u);
     const double error = file.higher_order.position_error;
-    EXPECT_LE(error, relative * 3.01);  // the diagonal of the control points
+    EXPECT_LE(error, relative * 3.01);  // the box of the control points has a diagonal of 3
     std::size_t on_circles = 0;
     for (const auto& [triangle, uses] : testing::count_triangles(file.mesh)) {
       if (uses != 1) continue;
@@ -361,7 +361,7 @@ TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
     }
     EXPECT_GE(on_circles, 8u) << "the surface has no points on its circles";
     const double volume = testing::volume(file.mesh), truth = 0.75 * 3.14159265358979324;
-    EXPECT_NEAR(volume, truth, 4.8 * error);  // times the area of the curved surface
+    EXPECT_NEAR(volume, truth, 4.8 * error);  // the curved surfaces have an area of 4.7
     EXPECT_LT(volume, truth) << "chords of the outer circle take more away than those of the inner one add";
     EXPECT_LE(file.higher_order.field_error, 1e-12) << "the height is linear";
   }
@@ -425,7 +425,7 @@ TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
       }
 }
 
-/// Cubic tets of a cube; in the first `folded`, the nodes within a face are moved through the cell.
+/// Cubic tets of a cube. In the first `folded` tets, a node within a face is moved through the cell.
 cells::CellBlock folded_box(std::size_t folded, double by) {
   cells::CellBlock block = warped_box(
       {71, 20, 3}, 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
@@ -445,14 +445,15 @@ TEST(CurvedSplit, RefusesCellsThatNeedUnboundedTets) {
   ReadOptions remedy = options;
   remedy.higher_order_tolerance = 0.1;
   EXPECT_NO_THROW(cells::assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
-  // A small number of cells is divided on trial first.
+  // If there are few cells, they are divided on trial first.
   const cells::MeshFile file = cells::assemble_mesh({folded_box(1, 2)}, options, "mesh");
   EXPECT_LE(file.higher_order.tets, 65536u + 64 * 48);
   EXPECT_GT(file.higher_order.tolerance, 1e-5);
 }
 
 TEST(CurvedSplit, LoosensTheToleranceForOneStronglyCurvedCell) {
-  // One tet with values 1 at the corners and 0 halfway: more than a million tets at a ten-thousandth.
+  // One tet with values 1 at the corners and 0 at the middles of edges. It would need more than a million tets at a
+  // tolerance of 1e-4.
   cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
   block.types.resize(1), block.offsets.resize(2), block.connectivity.resize(10);
@@ -498,7 +499,7 @@ TEST(CurvedSplit, RefusesMeshesThatNeedUnboundedTets) {
         {"mesh: its higher-order cells up to ", " cannot be approximated closely enough by ", "`higher_order_tets`"});
   };
   expect_refusal(1, alone - 64 * block.types.size() - 1);
-  expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each alone is below the limit
+  expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each block alone is below the limit
 }
 
 TEST(CurvedSplit, UsesLittleMemoryForADamagedNode) {
@@ -513,7 +514,7 @@ TEST(CurvedSplit, UsesLittleMemoryForADamagedNode) {
 
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   for (const std::size_t kind : {0u, 4u}) {
-    // A node within an edge is a thousand times as far away as the mesh is large.
+    // A node within an edge is moved away by a thousand times the mesh's size.
     cells::CellBlock block = warped_box(kinds[kind], 1, bent, wavy, false);
     block.positions[block.connectivity[kinds[kind].nodes / 2 + 2]].x += 1e3;
     std::uint64_t tets = 0;

@@ -29,8 +29,8 @@ scene::TetMesh mixed_tets(bool own_points) {
   return cells::assemble_mesh(std::move(blocks), {}, "mesh").mesh;
 }
 
-/// The mesh followed by the cells selected by `again`, with their own points, every tet's corners and every cell's tets
-/// in another order.
+/// The mesh followed by copies of the cells selected by `again`. The copies have separate points, and the corners of
+/// each tet and the tets of each cell are in another order.
 scene::TetMesh with_copies(scene::TetMesh mesh, const auto& again, unsigned seed) {
   std::mt19937 random(seed);
   const std::size_t tets = mesh.tets.size();
@@ -94,7 +94,7 @@ TEST(DuplicateCells, AreFoundByTheirCornersAndDropped) {
 TEST(DuplicateCells, ATetInsideAnotherCellIsNotADuplicate) {
   const scene::TetMesh once = mixed_tets(false);
   scene::TetMesh mesh = once;
-  std::size_t split = 0;  // a tet of a cell with several
+  std::size_t split = 0;  // a tet of a cell that has several tets
   while (mesh.cell_of(split) != mesh.cell_of(split + 1)) ++split;
   mesh.tets.push_back(mesh.tets[split]);
   mesh.original_cell.push_back(mesh.original_cell.back() + 1);
@@ -148,7 +148,7 @@ TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
   EXPECT_TRUE(cells::warnings_on_cells(once.counts, once.higher_order).empty());
   EXPECT_TRUE(readable_in_parts(io::identify(file), {}));
   EXPECT_FALSE(readable_in_parts(io::identify(file), options)) << "two parts would each keep their copy";
-  // The same for several files of one mesh, as a .pvd lists those of one time.
+  // The same holds for several files of one mesh, such as those that a .pvd lists for one time.
   const std::vector<std::filesystem::path> files = {folder / "a.vtu", folder / "b.vtu"};
   EXPECT_EQ(read_mesh(files).counts.cells_duplicate, cells);
   EXPECT_NEAR(testing::volume(read_mesh(files, options).mesh), 1, 1e-9);
@@ -163,7 +163,7 @@ TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
   EXPECT_EQ(mesh.counts.cells_ghost, block.types.size());
   EXPECT_EQ(mesh.counts.cells_duplicate, 0u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-9);
-  // As levels, used by older files.
+  // Older files use vtkGhostLevels instead of vtkGhostType.
   for (const char* name : {"a.vtu", "b.vtu", "m.pvtu"}) {
     std::string text = test::contents(folder / name);
     for (std::size_t at = text.find("vtkGhostType"); at != std::string::npos; at = text.find("vtkGhostType", at + 1))

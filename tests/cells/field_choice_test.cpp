@@ -89,7 +89,7 @@ TEST(FieldChoice, NamesIndicateLabelsOfWholeNumbersOnly) {
     EXPECT_EQ(choose("", quantity).label, name);
     EXPECT_EQ(cells::choose_field("", summary(std::vector{quantity}), "mesh.vtu", true).label, name);
     EXPECT_EQ(choose("", block_with({field(name, Association::point, {0, 3, 7, 7}), other})).label, "other") << name;
-    // One part of the file has only integers, another has not.
+    // One part of the file has only integers, the other part also has a fraction.
     const std::vector<cells::CellBlock> parts = {block_with({field(name, Association::point, {0, 3, 7, 7}), other}),
                                                  quantity};
     EXPECT_EQ(cells::choose_field("", summary(parts), "mesh.vtu").label, name);
@@ -121,7 +121,7 @@ TEST(FieldChoice, NumbersOfPointsAreIdsByAnyName) {
   // Integers may begin anywhere; floats that do not begin at 0 or 1 are pressures.
   EXPECT_EQ(choose("", block_with({integers("nr", shuffled(90, 501)), cells})).label, "porosity");
   EXPECT_EQ(choose("", block_with({field("p", Association::point, shuffled(90, 300)), cells})).label, "p");
-  // One twice, one missing, one in between, vectors.
+  // Values are not ids if one occurs twice, is missing, or is between two integers, or if they are vectors.
   std::vector<double> twice = shuffled(90, 0);
   twice[7] = twice[8];
   EXPECT_EQ(choose("", block_with({integers("n", twice), cells})).label, "n");
@@ -149,7 +149,7 @@ TEST(FieldChoice, RecognizesIdsInBlocksAndParts) {
   std::vector<std::vector<cells::FieldTally>> parts;
   for (const cells::CellBlock& block : blocks) parts.push_back(cells::tally_fields(std::span(&block, 1)));
   EXPECT_EQ(cells::summarize_fields(parts), together);
-  // Each block numbers its own.
+  // Each block numbers its own points, beginning at 0.
   const std::vector<cells::CellBlock> own = {block_with({integers("nr", shuffled(20, 0)), cells}),
                                              block_with({integers("nr", shuffled(33, 0)), cells})};
   EXPECT_TRUE(summary(own)[0].ids);
@@ -169,7 +169,7 @@ TEST(FieldChoice, IdsAreTheLastChoiceAndAreNoted) {
   EXPECT_NE(chosen.notes[1].find("they may be ids"), std::string::npos);
   const cells::CellBlock numbered = block_with({integers("p", {0, 1, 2, 3, 4, 5, 6, 7}), constant});
   EXPECT_TRUE(cells::choose_field("", summary(std::vector{numbered}), "mesh.vtu", true).shape);
-  // Fields that the file marks as ids.
+  // A field that the file marks as ids is not chosen if there is another field.
   cells::CellBlock marked =
       block_with({field("n", Association::point, {7, 3, 3, 9}), field("c", Association::cell, {0, 5})});
   EXPECT_EQ(choose("", marked).label, "n");
@@ -188,7 +188,7 @@ TEST(FieldChoice, NoiseAroundZeroIsShownWithANote) {
   EXPECT_EQ(alone.label, "y");
   ASSERT_EQ(alone.notes.size(), 1u);
   EXPECT_NE(alone.notes.front().find("noise"), std::string::npos);
-  // Small but never negative: a charge, a permeability.
+  // Values that are small but never negative may be a charge or a permeability, so there is no note.
   EXPECT_TRUE(choose("", block_with({field("k", Association::point, {1e-15, 2e-13})})).notes.empty());
 }
 

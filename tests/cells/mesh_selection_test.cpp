@@ -134,7 +134,7 @@ TEST(Clip, ABoxInsideOneCellIsItsVolume) {
   EXPECT_EQ(counts.tets_made, inside.tets.size());
 }
 
-/// A plane along faces of cells divides no cell, even at an angle with rounding.
+/// A plane along faces of cells divides no cell, even if the plane is oblique and its numbers are rounded.
 TEST(Clip, PlanesThroughVerticesLeaveNoSplinters) {
   const scene::TetMesh straight = datasets::regular_split(6, 6, 6, glm::dvec3(0.1), glm::dvec3(0.3));
   for (const glm::dvec3 normal : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(1, -1, 0)}) {

@@ -75,7 +75,7 @@ void expect_fills_the_box(const cells::MeshFile& file, unsigned seed, bool has_f
   }
   EXPECT_EQ(wrong, 0u) << "triangles that not just two tets have";
   EXPECT_NEAR(outside, 6, 1e-11);
-  EXPECT_NEAR(testing::volume(file.mesh), 1, 1e-12);  // rounding of some 1e4 determinants
+  EXPECT_NEAR(testing::volume(file.mesh), 1, 1e-12);  // rounding of about 1e4 determinants
   EXPECT_EQ(file.counts.cells_tangled, 0u);
   EXPECT_EQ(file.counts.cells_open, 0u);
   std::mt19937 random(seed);
@@ -225,7 +225,7 @@ TEST(PolyhedronCells, HexahedraNotVisibleFromTheirSmallestCornerAreSplitDifferen
       block.offsets.push_back(block.connectivity.size());
     }
     const cells::MeshFile file = assemble_f(block);
-    // The cells whose cones would overlap if all were from the smallest corners.
+    // Counts the cells whose tets would overlap if every cell were split from its smallest corner.
     for (std::size_t c = 0; c < block.types.size(); ++c) {
       scene::TetMesh cone;
       cone.positions = block.positions;

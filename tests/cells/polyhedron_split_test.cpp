@@ -37,7 +37,7 @@ cells::MeshFile assembled(const cells::CellBlock& block, const std::string& fiel
   return file;
 }
 
-/// [0, 1]^3 as one polyhedron, possibly moved.
+/// The faces of a cube as one polyhedron, with points from index `first` on.
 Faces cube_faces(std::uint32_t first = 0) {
   Faces faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}};
   for (auto& face : faces)
@@ -48,7 +48,8 @@ std::vector<glm::dvec3> cube_points(double x = 0) {
   return {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}, {x, 0, 1}, {x + 1, 0, 1}, {x + 1, 1, 1}, {x, 1, 1}};
 }
 
-/// The triangles of a face with corners numbered by position, from a random start, in either direction.
+/// The triangles of a face whose corners are numbered by position and are listed from a random start, in either
+/// direction.
 std::set<testing::TrianglePlace> triangles_of(const std::vector<glm::dvec3>& outline, std::mt19937& random) {
   std::vector<glm::dvec3> p = outline;
   std::sort(p.begin(), p.end(), comes_before);

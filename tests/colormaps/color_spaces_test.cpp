@@ -35,8 +35,8 @@ TEST(ColorSpaces, AMixBeginsAndEndsExactlyAtItsColours) {
 
 TEST(ColorSpaces, MixesAreVtksToTheRoundingOfItsMatrices) {
   // Reference values from VTK 9.1's vtkColorTransferFunction::GetColor in the spaces Lab, Diverging and HSV with
-  // SetHSVWrap(1), between the colours below. VTK's XYZ matrices are rounded to four digits, in both directions: an
-  // error of 1.3e-4 in green of its own end colour.
+  // SetHSVWrap(1), between the colours below. VTK's XYZ matrices are rounded to four digits in both directions, which
+  // gives an error of 1.3e-4 in the green of VTK's own end colour.
   const glm::dvec3 a{0.231373, 0.298039, 0.752941}, b{0.705882, 0.0156863, 0.14902}, c{0.9, 0.9, 0.2};
   const struct {
     ColorSpace space;

@@ -45,7 +45,7 @@ TEST(DefaultFunction, AnOutlierDoesNotDecideTheRange) {
 }
 
 TEST(DefaultFunction, PixelsHaveTheTargetOpacityByBeerLambert) {
-  // Uniform extinction: each pixel's depth is extinction times the edge, so the factor is known.
+  // The extinction is uniform. Each pixel's optical depth is extinction times the edge, so the factor is known.
   const auto samples = cube_of([](float, float, float) { return 1.0; });
   const std::array<std::array<double, 2>, 1> extinction{{{1, 2}}};
   const PilotPixels pixels(samples, extinction, 1);
@@ -83,7 +83,7 @@ TEST(DefaultFunction, LabelsHaveNoOpacityBetweenThemAndAColourEach) {
     EXPECT_GT(function.evaluate(label).extinction, 0) << label;
     EXPECT_NE(function.evaluate(label).color, function.evaluate(label + 1).color) << label;
   }
-  // Known not to be labels, however few there are.
+  // The values are known not to be labels, however few different values there are.
   EXPECT_EQ(default_kind({.samples = &samples, .is_grid = true, .labels = std::vector<double>()}, {1, 9}),
             DefaultKind::values);
 }

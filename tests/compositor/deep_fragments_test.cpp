@@ -50,7 +50,7 @@ std::vector<DeepSample> integrated(const std::vector<DeepPiece>& pieces, const M
   for (std::size_t k = 0; k < pieces.size(); ++k)
     out.push_back({pieces[k].front,
                    pieces[k].back,
-                   {batch.red[k], batch.green[k], batch.blue[k]},  // The integrator stops behind opaque matter.
+                   {batch.red[k], batch.green[k], batch.blue[k]},  // The integrator's depth ends at opaque matter.
                    pieces[k].optical_depth > 0 ? pieces[k].optical_depth : batch.optical_depth[k]});
   return out;
 }
@@ -158,8 +158,8 @@ TEST(DeepFragments, CuttingAnywhereErrsLessThanTheAccuracy) {
       ASSERT_LE(wrong, (k == 0 ? 0 : accuracy) + 1e-7)
           << "round " << round << " z " << z << " accuracy " << accuracy << " thickness " << thickness
           << (medium.emission == Emission::independent ? " independent" : "");
-      // With floats, rounded depths determine the cut, which moves it by 2e-7 for depths up to 5; the effect depends on
-      // the extinction. Checked only where it is small.
+      // Depths rounded to float move the cut by 2e-7 for depths up to 5. The effect grows with the extinction, so it is
+      // checked only where it is small.
       if (thickness > 10) continue;
       const auto cut_floats = tests::composited(floats, z), in_front_of_white = tests::composited(floats, z, {1, 1, 1});
       double light = 0, brightest = 1;
@@ -190,7 +190,7 @@ TEST(DeepFragments, AHomogeneousRayIsOneSampleHoweverManyCellsItPasses) {
 }
 
 TEST(DeepFragments, GapsSeparateAndClearMatterCarriesNothing) {
-  // Clear below 0.5: the ray's scalar decreases to 0 and increases again.
+  // Matter is clear below 0.5; the ray's scalar decreases to 0 and increases again.
   const Medium medium{scene::TransferFunction({{0, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 2}})};
   const auto samples = samples_of({{1, 2, 1, 0}, {2, 3, 0, 1}, {3.5, 4, 1, 1}, {4, 5, 0.2, 0.4}}, medium, 1e-3);
   ASSERT_EQ(samples.size(), 3u);
@@ -229,7 +229,8 @@ TEST(DeepFragments, OverlappingCellsComeOutOneBehindTheOther) {
 }
 
 TEST(DeepFragments, FloatsStayTidyWhereDepthsAreIndistinguishable) {
-  // Near 1.6e7 floats are 1 or 2 apart: samples of length a tenth become points or get whole units.
+  // Near 1.6e7, adjacent floats are 1 or 2 apart: samples with a length of about 0.1 get the length 0 or a whole number
+  // of units.
   std::mt19937 random(3);
   std::vector<DeepSample> samples;
   double z = 16777200;
@@ -249,7 +250,7 @@ TEST(DeepFragments, FloatsStayTidyWhereDepthsAreIndistinguishable) {
     EXPECT_LE(tidy[i - 1].z_back, tidy[i].z);
     EXPECT_FALSE(tidy[i].z == tidy[i].z_back && tidy[i - 1].z == tidy[i - 1].z_back && tidy[i].z == tidy[i - 1].z);
   }
-  // Composited they equal the samples up to 2000 roundings of 6e-8.
+  // The composited result equals that of the samples up to 2000 roundings of 6e-8 each.
   const auto sum = tests::composited(tidy);
   EXPECT_NEAR(sum[3], -std::expm1(-2.0), 1e-4);
   EXPECT_NEAR(sum[1], -std::expm1(-2.0) * 0.002 / -std::expm1(-1e-3), 1e-4);

@@ -51,7 +51,7 @@ struct GlFrame {
     MergeContext mine = context(on_lattice);
     mine.device = device;
     static std::uint32_t frames = 0;
-    mine.frame = ++frames;  // unique: devices cache a frame's table
+    mine.frame = ++frames;  // must be unique: devices cache a frame's table
     if (device != nullptr && !on_lattice) {
       mine.lattice = &units;
       mine.table = &units_table;
@@ -94,7 +94,8 @@ std::vector<StackSegment> segments_of(std::uint32_t count, const Stack& stack, s
   const auto uniform = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
   double scalar = uniform();
   for (std::uint32_t i = 0; i < count; ++i) {
-    // Reflected at the ends instead of clamped: otherwise equal segments would keep their order.
+    // Values far outside [0, 1] are drawn again. Clamping would make many segments equal, and the order of equal
+    // segments does not matter.
     double next = scalar + 8 * (uniform() - 0.5) / std::sqrt(count);
     if (std::abs(next - 0.5) > 0.6) next = uniform();
     const double step = 1.5 / count;
@@ -214,8 +215,8 @@ TEST(GlCompute, ExactMatchesTheCpuWithinFloatRounding) {
     const GlFrame frame(exact, emission);
     for (const exchange::TilePart& part : {lattice_part(frame, shallow), chain_part(shallow)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
-      // 64 segments of up to 8 optical depths, with colours up to 8 times their extinction: rounding of floats, each
-      // below 2^-24 of the light. A quarter of what `exact` promises.
+      // 64 segments of up to 8 optical depths, with colours of up to 8 times their extinction. Each rounding error of a
+      // float is below 2^-24 of the light. The bound is a quarter of what `exact` promises.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind);
       expect_same_depth(cpu, gpu);
     }
@@ -227,7 +228,8 @@ TEST(GlCompute, SampledMatchesTheCpu) {
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);
     for (const exchange::TilePart& part : {chain_part(shallow), tuple_part(shallow)})
-      // A sample whose scalar rounds across the step at 0.7 would get the colour of the other side: none does here.
+      // A sample whose scalar is rounded across the step at 0.7 would get the colour of the other side of the step.
+      // This test has no such sample.
       EXPECT_LT(difference(frame.merged(nullptr, {part}), frame.merged(&device, {part})), 5e-6) << int(part.kind);
   }
 }
@@ -309,7 +311,7 @@ TEST(TileMerger, CellsAtACompositorWithoutADeviceAreRefused) {
 class Arrangements : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, Arrangements, testing::Values("sorted", "reversed", "shuffled"));
 
-/// One pixel of 20,000 among shallow ones, with all keys equal or not.
+/// One pixel has 20,000 segments, the others at most 3; with `one_depth`, all keys of a pixel are equal.
 Stack deep_stack(const char* arrangement, bool one_depth) {
   Stack stack{std::vector<std::uint32_t>(128, 3), arrangement, one_depth};
   stack.counts[37] = 20000;
@@ -324,7 +326,7 @@ TEST_P(Arrangements, ComputeShadersCompositeOneDeepPixelAmongShallowOnes) {
     const Stack stack = deep_stack(GetParam(), one_depth);
     for (const exchange::TilePart& part : {lattice_part(frame, stack), chain_part(stack)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
-      // Sums are double on both; each of 20,000 segments is accurate to 2^-23 of its own light.
+      // The CPU and the device both sum in double; each of 20,000 segments is accurate to 2^-23 of its own light.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind) << (one_depth ? ", one depth" : "");
       expect_same_depth(cpu, gpu);
     }
@@ -358,7 +360,7 @@ TEST(GlFragment, SampledMatchesTheCpuWithAFloatFramebuffer) {
 
 TEST(GlFragment, ListsLongerThanTheTextureAreSortedInPartsAndMerged) {
   GlSettings settings = fragment(false);
-  settings.texture_limit = 16;  // lists of 64 take four rows, four of them at a time
+  settings.texture_limit = 16;  // a list of 64 takes 4 of the 16 rows, so 4 such lists fit
   TESSERA_DEVICE_OR_SKIP(device, settings);
   const GlFrame frame(sampled);
   const exchange::TilePart part = chain_part({{64, 3, 33, 0, 16, 17}, "shuffled"});
@@ -384,7 +386,7 @@ TEST(GlCompositor, ManyTilesInFlightAreNotMixedUp) {
     for (std::uint32_t p = 0; p < 4; ++p) {
       fragments.lists.push_back({p, p, 1});
       fragments.keys.push_back({0, 0, 0, p});
-      fragments.values.push_back({float(job), float(p), 0, 0.5f});  // a run of its own colour
+      fragments.values.push_back({float(job), float(p), 0, 0.5f});  // each run has another colour
     }
     lights.push_back(device.composite(std::move(fragments), {&frame.lattice_table, 0, 0, 0}));
   }

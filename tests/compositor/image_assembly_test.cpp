@@ -61,7 +61,7 @@ MergedTile random_tile(std::size_t tile, bool deep, std::mt19937& random) {
   MergedTile made;
   made.image = scene::Image({rect.x1 - rect.x0, rect.y1 - rect.y0});
   std::uniform_real_distribution<float> uniform(0, 1);
-  const float step = random() % 2 == 0 ? 1 : 1e-4f;  // noise, or smooth enough that packing pays
+  const float step = random() % 2 == 0 ? 1 : 1e-4f;  // noise, or smooth enough that packing saves bytes
   for (auto* values : {&made.image.rgba, &made.image.depth})
     for (float& value : *values) value = 0.5f + step * uniform(random);
   if (!deep) return made;
@@ -102,7 +102,7 @@ TEST(ImageAssembly, TilesFromAnyRankInAnyOrderMakeTheImageOnce) {
     Job job(compositors);
     scene::Image expected(size);
     std::vector<bool> has_come(grid.count());
-    std::vector<std::vector<float>> reds(expected.depth.size());  // of each pixel's deep samples
+    std::vector<std::vector<float>> reds(expected.depth.size());  // red of each pixel's deep samples
     std::map<std::size_t, MergedTile> tiles;
     {
       std::vector<std::unique_ptr<TileSender>> senders;
@@ -133,7 +133,7 @@ TEST(ImageAssembly, TilesFromAnyRankInAnyOrderMakeTheImageOnce) {
     }
     job.collect();
 
-    std::map<std::size_t, int> reported;  // by the tile's first pixel
+    std::map<std::size_t, int> reported;  // number of reports, by the tile's first pixel
     std::mutex telling;
     ThreadEach threads;
     AssemblySettings settings = settings_of_grid(deep ? 1 << 24 : 0);
@@ -257,7 +257,7 @@ TEST(ImageAssembly, RefusesTruncatedChangedAndForeignMessages) {
     return message;
   };
   constexpr std::size_t empty =
-      sizeof(exchange::MessageHeader) + sizeof(std::uint64_t);  // without tiles, which is allowed
+      sizeof(exchange::MessageHeader) + sizeof(std::uint64_t);  // a message without tiles is allowed
   for (const exchange::Message& message : job.sent[0]) {
     ASSERT_FALSE(refused(message.bytes));
     for (std::size_t cut = 0; cut < message.bytes.size(); cut += cut < 200 ? 1 : 97) {
@@ -273,7 +273,7 @@ TEST(ImageAssembly, RefusesTruncatedChangedAndForeignMessages) {
   EXPECT_TRUE(refused(frame_and(MessageKind::tiles, ~std::uint64_t{0})));
   EXPECT_TRUE(refused(frame_and(MessageKind::parts, 0)));
 
-  // The number of deep samples, after the pixels of tile 2: any number above the actual one.
+  // The number of deep samples follows the pixels of tile 2. The test replaces this number by larger ones.
   const scene::PixelRect rect = grid.rect(2);
   scene::Image image(size);
   exchange::MessageReader reader(job.sent[0][0].bytes, 1);
@@ -287,7 +287,7 @@ TEST(ImageAssembly, RefusesTruncatedChangedAndForeignMessages) {
     bytes[at + byte] ^= std::byte{0x40};
     EXPECT_TRUE(refused(bytes)) << byte;
   }
-  // One more sample in a pixel than there are in total.
+  // A pixel states more samples than the message has in total.
   Bytes bytes = job.sent[0][0].bytes;
   bytes[at + sizeof(std::uint64_t)] ^= std::byte{8};
   EXPECT_TRUE(refused(bytes));

@@ -30,9 +30,9 @@ struct RandomRays {
   /// One run of touching segments, composited; or the whole ray, if runs are not separated.
   struct Run {
     std::size_t pixel = 0;
-    double front = 0, back = 0;  ///< planar: where it becomes visible, and where its last segment ends
+    double front = 0, back = 0;  ///< planar depths where the run becomes visible and where its last segment ends
     double red = 0, green = 0, blue = 0, transmittance = 1;
-    int showing = 0;  ///< segments with light or depth
+    int showing = 0;  ///< segments with an optical depth
   };
 
   /// Up to `most` segments per ray, some of them clear, some of length zero, with some gaps.
@@ -47,7 +47,7 @@ struct RandomRays {
       std::int64_t at = -(1 << 29) + static_cast<std::int64_t>(random() % 1000000);
       float scalar = random_scalar();
       for (std::size_t k = 0; k < count; ++k) {
-        // Gaps are many steps long: on the lattice segments that are a few steps apart count as touching.
+        // Gaps are many steps long, because segments a few lattice steps apart count as touching.
         const bool gap = random() % 8 == 0;
         if (gap) at += 1000 + static_cast<std::int64_t>(random() % 1000000);
         const auto step = static_cast<std::int64_t>((1 << 30) / (static_cast<std::int64_t>(most) + 2));
@@ -58,7 +58,8 @@ struct RandomRays {
         at += length;
         scalar = next;
       }
-      // Only segments with equal keys may change places; those of length zero are level with their neighbours.
+      // The order depends only on the keys, so only segments with equal keys may change places. A segment of length
+      // zero may have the same front depth as its neighbour.
       std::sort(rays[p].begin(), rays[p].end(), [](const LatticeSegment& a, const LatticeSegment& b) {
         return std::tie(a.front, a.back, a.scalar_front, a.scalar_back) <
                std::tie(b.front, b.back, b.scalar_front, b.scalar_back);
@@ -66,8 +67,8 @@ struct RandomRays {
     }
   }
 
-  /// The visible result for a pixel, per run, or for the whole ray; segments behind less light than `least` are
-  /// omitted.
+  /// The visible result of a pixel, for each run or for the whole ray. Segments behind a transmittance below `least`
+  /// are omitted.
   [[nodiscard]] std::vector<Run> composited(std::size_t pixel, bool runs, double least = 0) const {
     return composited(pixel, rays[pixel], runs, least);
   }
@@ -143,7 +144,7 @@ struct RandomRays {
     return camera;
   }
   float random_scalar() { return static_cast<float>(std::uniform_real_distribution<double>(-0x1p30, 0x1p30)(random)); }
-  /// Clear below 0.3 and between two knots above, a step at 0.6.
+  /// A function that is clear below 0.3 and between two higher knots, with a step at 0.6.
   scene::TransferFunction random_function(double extinction) {
     std::uniform_real_distribution<double> uniform(0, 1);
     const auto color = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };

@@ -49,7 +49,7 @@ struct PixelRuns {
 /// By projector and pixel.
 using Runs = std::array<std::array<PixelRuns, pixels>, projectors>;
 
-/// Runs of random pixels without overlap: each is in a depth range of its own.
+/// Runs of random pixels that do not overlap: each run has a separate depth range.
 Runs random_runs(std::mt19937& random, bool segments) {
   Runs made;
   const auto uniform = [&] { return std::uniform_real_distribution<float>(0, 1)(random); };

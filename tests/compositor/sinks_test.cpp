@@ -34,13 +34,13 @@ struct Scene : RandomRays {
   Scene(std::uint32_t seed, std::size_t most, double extinction)
       : RandomRays(seed, most, extinction, false),
         table(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, scene::Emission::absorption) {}
-  /// `left_out`: opacity_weight(); the larger it is, the later a pixel closes.
+  /// `left_out` is the value of opacity_weight(): the larger it is, the later a pixel closes.
   [[nodiscard]] TileScene tile_scene(double left_out = 1e30) const {
     return {&space, &integrator, left_out, &table, lattice};
   }
   integrals::LaneTable table;
 
-  /// A segment that is sent unchanged, as its compositor evaluates it.
+  /// A segment that is sent unchanged, with the light that its compositor computes.
   [[nodiscard]] Sent shown(std::size_t pixel, const LatticeSegment& s) const {
     return shown(composited(pixel, {s}, true, 0).at(0));
   }
@@ -137,8 +137,8 @@ enum class How {
   unordered,  ///< take_unordered() of what has been produced
 };
 
-/// Passes one tile through a sink, in rounds as the renderer does: each adds what begins in front of its depth, and
-/// some of what is behind.
+/// Passes one tile through a sink in rounds, as the renderer does. Each round adds the segments that begin in front of
+/// the round's depth, and some of those behind it.
 template <class Encoding>
 void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how) {
   typename Encoding::Store store;
@@ -168,8 +168,8 @@ void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how
   sink.end_tile();
 }
 
-/// Parts belong to tile 3, one is the last, and depths declared complete stay complete: no later part begins in front
-/// of them.
+/// Expects that all parts belong to tile 3, that one part is the last, and that no part begins in front of a depth that
+/// an earlier part declared complete.
 void expect_promises_kept(const Parts& parts, const std::vector<Sent>& sent) {
   ASSERT_FALSE(parts.parts.empty());
   for (std::size_t i = 0; i < parts.parts.size(); ++i) {
@@ -221,9 +221,10 @@ TYPED_TEST(Sinks, EachSegmentIsSentOnceInAnyOrder) {
     }
 }
 
-/// Floats in the records, and float lanes on the lattice: window_kernel_test measures their errors.
+/// Records store floats, and segments on the lattice are integrated in float lanes: window_kernel_test measures the
+/// errors.
 constexpr double light_error = 1e-6;
-/// A run's thickness is a float; the front of a lattice run is a step.
+/// A run's thickness is stored as a float; the front of a lattice run is rounded to a step.
 constexpr double depth_error = 2e-7;
 
 void expect_same(const Sent& sent, const Sent& expected) {
@@ -247,7 +248,7 @@ TYPED_TEST(Sinks, SegmentsThatTouchTravelAsOneRun) {
       for (std::size_t p = 0; p < Scene::pixels; ++p)
         for (const auto& run : scene.composited(p, true)) {
           expected.push_back(Scene::shown(run));
-          // A run with one visible segment may be sent as that segment, or with the clear ones behind it.
+          // A run with one visible segment may be sent as that segment, or together with the clear segments behind it.
           if (run.showing == 1) expected.back().back = 0;
         }
       std::sort(expected.begin(), expected.end(), [](const Sent& a, const Sent& b) { return a.place() < b.place(); });
@@ -260,7 +261,7 @@ TYPED_TEST(Sinks, SegmentsThatTouchTravelAsOneRun) {
     }
 }
 
-/// The light of a ray computed from what was sent, front to back.
+/// The light of a ray, composited front to back from the records that were sent.
 Sent joined(const std::vector<Sent>& sent, std::size_t pixel) {
   Sent whole{pixel, infinity};
   double transmittance = 1;
@@ -289,7 +290,7 @@ TYPED_TEST(Sinks, RunsCutInDepthKeepTheirTotal) {
         EXPECT_EQ(whole.front, infinity);
         continue;
       }
-      // Each of a ray's runs has the error of one.
+      // A ray is sent as several runs, each with the error of one run.
       EXPECT_NEAR(whole.front, expected[0].front, depth_error);
       EXPECT_NEAR(whole.red, expected[0].red, 4 * light_error);
       EXPECT_NEAR(whole.opacity, 1 - expected[0].transmittance, 4 * light_error);
@@ -309,7 +310,7 @@ TYPED_TEST(Sinks, CutsFreeTheCompositorBeforeTheTileEnds) {
 }
 
 TYPED_TEST(Sinks, SendsNothingBehindOpaqueRunsUnlessThoseMayComeLater) {
-  Scene scene(3, 200, 2000);                                          // dark after a few segments
+  Scene scene(3, 200, 2000);                                          // opaque after a few segments
   const double weight = scene.integrator.termination_error() / 1e-4;  // pixels close at a transmittance of 1e-4
   std::size_t in_all = 0, in_order = 0, unordered = 0;
   for (std::size_t p = 0; p < Scene::pixels; ++p) in_all += scene.composited(p, true).size();

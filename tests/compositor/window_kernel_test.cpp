@@ -20,9 +20,9 @@ namespace {
 using tests::RandomRays;
 constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
 
-/// A float lane's integral has an error of some 2^-22 of a segment's opacity (lane_integrator_test), and along a ray
-/// the opacities, each times the remaining light, sum to at most one; the sums themselves are double. Rounded knots
-/// change a segment by the same amount.
+/// A float lane's integral has an error of about 2^-22 of a segment's opacity (lane_integrator_test). Along a ray, the
+/// sum of the opacities, each times the remaining light, is at most one. The sums themselves are double. Rounding of
+/// knots changes a segment by the same amount.
 constexpr double lanes_error = 1e-6;
 
 /// Adds the rays in a square's lists, shuffled, in `rounds`: each round adds segments that begin in front of its depth,
@@ -83,7 +83,7 @@ constexpr std::array<Case, 7> cases{{{1, 5, false},
                                      {200, 20, false},
                                      {1300, 2, true}}};
 
-/// Each with and without light on the segments.
+/// Checks each case with and without light on the segments.
 template <class Check>
 void for_each_case(const Check& check) {
   tessera::tests::for_each_instruction_set([&](const char* name) {
@@ -151,8 +151,8 @@ TEST(CompositeWindows, APixelEndsOnlyWhenTooLittleLightRemains) {
     WindowState state;
     composite(rays, {&table.lanes, least}, 3, seed, state);
     for (std::size_t p = 0; p < RandomRays::pixels; ++p) {
-      // Where the remaining light is near the limit, lanes may be on the other side of it; otherwise they end where
-      // double precision does.
+      // Where the transmittance is near the limit, lanes may end on the other side of the limit. Elsewhere they end
+      // where double precision does.
       const auto ended = rays.composited(p, false, least), before = rays.composited(p, false, least * 1.0001),
                  after = rays.composited(p, false, least * 0.9999);
       if (ended.empty() || before[0].transmittance != after[0].transmittance) continue;
@@ -176,8 +176,8 @@ TEST(CompositeWindows, RunsMatchDoublePrecisionUnderEveryInstructionSet) {
       const auto expected = rays.composited(p, true);
       ASSERT_EQ(found[p].size(), expected.size()) << "pixel " << p;
       for (std::size_t k = 0; k < expected.size(); ++k) {
-        const WindowState::Run& run = found[p][k];  // they end front to back
-        // A run is not sent as its only segment where this would lose its light.
+        const WindowState::Run& run = found[p][k];  // runs end front to back
+        // A run of one lit segment is sent as a run: sending the segment instead would lose the light.
         EXPECT_EQ(run.several, rays.lit || expected[k].showing > 1);
         EXPECT_EQ(first_visible_depth(rays.lattice, run.first, rays.integrator), expected[k].front);
         if (run.several) {
@@ -197,7 +197,7 @@ TEST(CompositeWindows, RunsEndExactlyWhereSegmentsDoNotTouch) {
     SCOPED_TRACE(name);
     RandomRays rays(1, 1, 5, false);
     const Table table(rays);
-    const float visible = static_cast<float>(0x1p27);  // above the middle, 0.5, it absorbs
+    const float visible = static_cast<float>(0x1p27);  // above the middle scalar, 0.5, where matter absorbs
     for (const std::int32_t gap : {-touching_steps, 0, touching_steps, touching_steps + 1, 100000}) {
       for (auto& ray : rays.rays) ray = {{0, 1 << 20, visible, visible}, {(1 << 20) + gap, 1 << 21, visible, visible}};
       WindowState state;

@@ -98,7 +98,7 @@ TEST(Generators, SliversAreFlatButHaveNoShortEdge) {
   ASSERT_EQ(mesh.tets.size(), 6u * 216 + 5 * 36);
   std::size_t flat = 0;
   for (const scene::Tet& tet : mesh.tets) {
-    // Four corners of a square bent by edge / aspect: six times the volume is edge^2 times the bend.
+    // A sliver's corners are those of a square bent by edge / aspect; six times its volume is edge^2 times the bend.
     if (signed_volume_6(mesh, tet) < 2 * edge * edge * edge / aspect) {
       ++flat;
       for (int a = 0; a < 4; ++a)
@@ -112,7 +112,8 @@ TEST(Generators, SliversAreFlatButHaveNoShortEdge) {
 TEST(Generators, StackAndPlateAreApart) {
   const scene::TetMesh mesh = thin_stack(100);
   EXPECT_EQ(mesh.tets.size(), 6u * (100 + 60));
-  // Each part has a closed surface of its own: the stack 12 + 8 triangles per layer, the plate's top, bottom and sides.
+  // The stack and the plate have separate surfaces: the stack's ends and 8 triangles per layer, the plate's top, bottom
+  // and sides.
   EXPECT_EQ(count_faces(mesh).boundary, (2 * 2 + 100 * 8u) + (60 * 2 * 2 + 4 * 8 * 2 + 8 * 2));
 }
 

@@ -21,8 +21,8 @@ std::vector<float> samples_of(const std::string& kind, const std::map<std::strin
   return samples;
 }
 
-/// For n^3 samples cut into `parts` bricks along each axis: the fraction of bricks that contain values between the two.
-/// Bricks share boundary samples.
+/// For n^3 samples cut into `parts` bricks along each axis: the fraction of bricks that contain values between `low`
+/// and `high`. Adjacent bricks share boundary samples.
 double share_shown(const std::vector<float>& samples, std::size_t n, std::size_t parts, float low, float high) {
   const std::size_t side = (n - 1) / parts;
   std::size_t shown = 0;

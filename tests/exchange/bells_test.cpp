@@ -21,13 +21,13 @@ TEST(Bells, WakeTheRankTheyAreRungFor) {
     barrier(transport);
     if (transport.rank() == 0) {
       for (const int rank : {1, 2}) bells->ring(rank);
-      EXPECT_EQ(bells->heard(), before);  // no wake-up was sent here
+      EXPECT_EQ(bells->heard(), before);  // this rank was sent no wake-up
       return;
     }
-    // A thread that is not woken hangs.
+    // If the wake-up were lost, the test would hang.
     while (bells->heard() == before) bells->wait(before, std::chrono::hours(1));
     EXPECT_EQ(bells->heard(), before + 1);
-    bells->wait(before, std::chrono::hours(1));  // a wake-up was sent since: returns at once
+    bells->wait(before, std::chrono::hours(1));  // returns at once, because a wake-up was sent after `before`
   });
 }
 
@@ -36,7 +36,7 @@ TEST(Bells, ARankWithoutAWakeUpSleepsForItsWholeTimeout) {
     const auto bells = Bells::hung(transport);
     const auto start = std::chrono::steady_clock::now();
     const std::uint32_t before = bells->heard();
-    // A signal may wake it early.
+    // A signal may wake the thread early.
     while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(50))
       bells->wait(before, std::chrono::milliseconds(60));
     EXPECT_EQ(bells->heard(), before);

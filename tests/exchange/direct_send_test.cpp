@@ -179,7 +179,7 @@ TEST(DirectSend, MessagesOfAnotherImageEndTheRun) {
                           {7, rows, {0, -1, size.width, packet_rows}, 0},
                           {7, rows, {9, 0, 3, packet_rows}, 0},
                           {7, rows, rows, 0},           // pixels are missing
-                          {7, rows, {0, 0, 0, 0}, 1}};  // stopped; with one byte too many
+                          {7, rows, {0, 0, 0, 0}, 1}};  // a stop message with one byte too many
   for (const Header& header : wrong) {
     EXPECT_THROW(run_ranks(2,
                            [&](Transport& transport) {

@@ -73,14 +73,15 @@ struct Frame {
   std::uint64_t parts = 0;
 };
 
-/// Receives a frame in any order that keeps each projector's own, merges whenever there is work, and checks the
-/// results. Returns how often a tile was merged before it was complete.
+/// Receives a frame's messages in a random order that keeps the order of each projector, merges whenever there is work,
+/// and checks the results. Returns how often a tile was merged before it was complete.
 std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
   Frame frame(seed, large_parts);
   FrameCollector& collector = frame.collector;
-  std::map<std::uint32_t, double> complete_to;     // depth up to which each tile was at least merged
-  std::map<std::uint64_t, std::uint32_t> pending;  // parts with records that were not taken, by their number
-  std::map<std::uint32_t, std::size_t> awaited;    // last parts that have not arrived, by tile
+  std::map<std::uint32_t, double> complete_to;  // each tile is merged at least up to this depth
+  // Tile of each part with records that has not been taken, by part number.
+  std::map<std::uint64_t, std::uint32_t> pending;
+  std::map<std::uint32_t, std::size_t> awaited;  // number of last parts that have not arrived, by tile
   for (std::size_t p = 0; p < frame.sent.size(); ++p)
     for (const SentMessage& sent : frame.sent[p])
       if (sent.kind == SentMessage::Kind::part && sent.part.last) ++awaited[sent.part.tile];
@@ -152,14 +153,14 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
       EXPECT_LE(paid[q], owed[q]);
     }
   }
-  // A complete tile is work at once, so that all tiles are finished after the last message, and no credit is
+  // A tile becomes work as soon as it is complete. So all tiles are finished after the last message, and no credit is
   // outstanding.
   EXPECT_TRUE(collector.finished()) << "seed " << seed;
   EXPECT_TRUE(pending.empty()) << "seed " << seed;
   EXPECT_EQ(paid, owed) << "seed " << seed;
   EXPECT_EQ(std::set<std::uint32_t>(finished.begin(), finished.end()).size(), finished.size());
   EXPECT_EQ(collector.longest_ray(), frame.projectors - 1);
-  std::uint64_t ended = 0;  // of tiles whose ends arrive here
+  std::uint64_t ended = 0;  // sum over projectors whose end messages arrive here
   for (int p = 0; p < frame.projectors; p += 2) ended += static_cast<std::uint64_t>(p + 1);
   EXPECT_EQ(collector.sums().counters.fragments, ended);
   return early;
@@ -202,7 +203,7 @@ TEST(FrameCollector, CreditForATileThatIsNotItsFirstUnfinishedOneWaits) {
   EXPECT_EQ(one.collector.pay(0), 10u);  // the first one's
   one.collector.take(tiles[1]);
   one.collector.finish(tiles[1]);
-  EXPECT_EQ(one.collector.pay(0), 0u);  // finished, but after the first unfinished one
+  EXPECT_EQ(one.collector.pay(0), 0u);  // tiles[1] is finished, but the earlier tiles[0] is not
   one.collector.take(tiles[0]);
   one.collector.finish(tiles[0]);
   EXPECT_EQ(one.collector.pay(0), 10u);

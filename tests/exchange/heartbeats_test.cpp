@@ -168,8 +168,8 @@ TEST(Heartbeats, RandomStopsAreNoticedIfTheyAreLongAndOnlyThen) {
     SimulatedJob job(ranks, false, seed, milliseconds(std::uniform_int_distribution<int>(0, 80)(random)));
     job.run(milliseconds(std::uniform_int_distribution<int>(0, 9000)(random)));
     const int stopped = std::uniform_int_distribution<int>(0, ranks - 1)(random);
-    // In timeouts. Up to an eighth, a delay and a rank's quarters of a second may pass between the last heartbeat and
-    // the stop.
+    // The length of the stop in timeouts. An eighth of a timeout and a message's delay may pass between the last
+    // heartbeat and the stop, and rank r waits r quarters of a second longer than a timeout.
     const double length = std::uniform_real_distribution<double>(0, 1.9)(random);
     job.stop(stopped);
     job.run(milliseconds(static_cast<int>(length * 8000)));

@@ -57,7 +57,7 @@ TEST(HostTeam, SharesDataThroughGrowthAndShrinking) {
     const std::uint32_t* before = nullptr;
     for (const std::size_t count : {10u, 1000u, 3'000'000u, 2'900'000u, 100u, 5'000'000u}) {
       auto* const shared = team->memory_of<std::uint32_t>(Room::entries, count);
-      // Reused if it is large enough and at most twice too large.
+      // The memory is reused if it is large enough and at most twice too large.
       if (count == 2'900'000u) {
         EXPECT_EQ(shared, before);
       }

@@ -168,7 +168,7 @@ TEST(Message, NoBytesAtRandomCrashAReader) {
     Bytes message = written(random_contents(random));
     for (int changes = 1 + i % 3; changes > 0; --changes)
       message[random() % message.size()] = static_cast<std::byte>(random());
-    refusal([&] { read(message); });  // refused with a message, or read as other values
+    refusal([&] { read(message); });  // must be refused with a message, or be read as other values
   }
 }
 

@@ -104,7 +104,7 @@ TilePart part_of(std::uint32_t tile, std::size_t part, std::size_t size, bool la
 struct Summary {
   std::vector<MessageKind> kinds;
   FrameBegin begin{};
-  std::vector<std::uint32_t> begun;  ///< tiles whose bit is set, by index in the compositor's list
+  std::vector<std::uint32_t> begun;  ///< indices, in the compositor's list, of tiles whose bit is set
   FrameEnd end{};
   std::vector<PartHeader> parts;
   std::map<std::uint32_t, Bytes> records;  ///< by tile
@@ -240,7 +240,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   auto projector = std::async(std::launch::async, [&] {
     for (; put < parts; ++put) outbox.put(part_of(0, put, part_bytes, false));
   });
-  // No credit returns: it stops after sending the window and at most one more message.
+  // No credit returns, so the projector stops after sending the window and at most one more message.
   ASSERT_TRUE(job.projector.comes_to_wait());
   const std::size_t stuck_at = put;
   EXPECT_LT(stuck_at, parts);
@@ -248,7 +248,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   while (job.take(0, false, milliseconds(1))) sent += job.received[0].back().size();
   EXPECT_GE(sent, window - message_bytes);
   EXPECT_LE(sent, window + message_bytes + part_bytes + 1024);
-  // Credit for one message allows about one more.
+  // Credit for one message allows about one more message.
   job.give_back(0, job.received[0].back().size());
   ASSERT_TRUE(job.take(0, false));
   EXPECT_FALSE(job.take(0, false, moment));
@@ -272,7 +272,7 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
   Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true, true}, {});
   auto later = std::async(std::launch::async, [&] { outbox.put(part_of(2, 0, 200 << 10, true)); });
-  ASSERT_TRUE(job.projector.comes_to_wait());  // it must not run ahead
+  ASSERT_TRUE(job.projector.comes_to_wait());  // the later tile must not run ahead
   // Although the backlog is full, tiles 0 and 1 proceed on their compositor's credit alone.
   auto first = std::async(std::launch::async, [&] {
     outbox.put(part_of(0, 0, 32, true));
@@ -283,7 +283,7 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
     while (job.received[0].empty() || MessageReader(job.received[0].back(), 0).kind() != MessageKind::end)
       job.take(0, true, milliseconds(100));
   });
-  later.get();  // all earlier ones have ended: now it is the first
+  later.get();  // all earlier tiles have ended, so this tile is the first
   outbox.end_frame({});
   receiver.join();
   std::vector<std::uint32_t> order;
@@ -299,7 +299,7 @@ TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
   outbox.pass(1);
   outbox.put(part_of(2, 0, 64, true));
   outbox.put(part_of(0, 0, 32, false));
-  outbox.flush();  // not full, but it is sent
+  outbox.flush();  // the message is not full, but it is sent
   ASSERT_TRUE(job.take(0, true));
   ASSERT_TRUE(job.take(0, true));
   outbox.put(part_of(0, 1, 32, true));

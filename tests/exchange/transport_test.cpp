@@ -135,7 +135,7 @@ TEST(FirstContact, EndsTheRunWhicheverMessageIsLost) {
         run_ranks(3, [&](Transport& transport) {
           Losing losing(transport, transport.rank() == mute ? first : 1000);
           make_first_contact(losing, std::chrono::milliseconds(300));
-          barrier(losing);  // waits on a rank that did not get the error
+          barrier(losing);  // a rank without the error waits here for the others
         });
         ADD_FAILURE() << "rank " << mute << ", message " << first << ": nobody noticed";
       } catch (const scene::Error& error) {

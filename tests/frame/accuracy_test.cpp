@@ -111,8 +111,9 @@ TEST_P(Accuracy, ExactKeepsItsPromise) {
   for (const NamedView& v : views())
     for (const NamedFunction& f : functions()) {
       if (!some.next()) continue;
-      // Optical depth through the mesh: haze, the usual, opaque within a ten-thousandth of the path. Neighbouring
-      // functions and views get different ones; all pairs of view and thickness, and of function and thickness, occur.
+      // The optical depth through the mesh is that of haze, of usual matter, or of matter that is opaque within a
+      // ten-thousandth of the path. Consecutive functions and views get different values. All pairs of a view and a
+      // thickness, and of a function and a thickness, occur.
       const double thickness = std::array{0.002, 1.0, 1000.0}[n % 3];
       const Emission emission = n % 4 == 3 ? Emission::independent : Emission::absorption;
       ++n;

@@ -14,8 +14,8 @@
 #include "projection/tile_lists.hpp"
 #include "reference/view.hpp"
 
-/// Segments that carry a second linear value in addition to the scalar: here the light that reaches each point, linear
-/// in space, so that the light of whole rays through a mesh of uniform extinction has a closed form.
+/// Segments that carry a second linear value in addition to the scalar. Here it is the light that reaches each point.
+/// It is linear in space, so the light of a ray through a mesh of uniform extinction has a closed form.
 namespace tessera::frame::attribute_test {
 namespace {
 
@@ -100,7 +100,7 @@ struct Scene {
     at_steps = projection::CellsAtSteps(prepared, steps, 10, nullptr);
   }
 
-  /// Renders all tiles into `sink`; small buffers, so that a tile has several flushes.
+  /// Renders all tiles into `sink`. The buffers are small, so that each tile is flushed several times.
   template <class Source, class Sink>
   void render(Sink& sink) {
     const projection::ProjectedMesh projected{
@@ -171,16 +171,16 @@ TEST(Attribute, LightThatIsLinearInSpaceIsIntegratedAsInClosedForm) {
         most = std::max(most, std::abs(sink.light[static_cast<std::size_t>(at)] - expected));
       }
     EXPECT_GT(seen, 300u);
-    // Vertices are rounded to 2^-32 pixel (PixelSpace), here 2e-11 world units; where a ray grazes the box its entry
-    // moves by a few tens of times that.
+    // Vertices are rounded to 2^-32 pixel (PixelSpace), here 2e-11 world units. Where a ray grazes the box, its entry
+    // moves by a few tens of times this distance.
     EXPECT_LT(most, 1e-9);
   }
 }
 
-/// Cells cut by a transfer function's step have their attribute cut too: the sum over the pieces is the same.
+/// Where a step of the transfer function cuts a cell, the attribute is cut too: the sum over the pieces is the same.
 TEST(Attribute, IsCutWithItsSegmentAtSteps) {
   scene::TetMesh mesh = datasets::cube(6);
-  // Within a double's last places of the step everywhere, so that cells need extra precision.
+  // All scalars are within the last places of a double from the step, so that cells need extra precision.
   for (std::size_t i = 0; i < mesh.scalars.size(); ++i) mesh.scalars[i] = i % 3 == 0 ? 0.5 : std::nextafter(0.5, i % 2);
   const scene::TransferFunction step(
       {{0, {1, 1, 1}, extinction}, {0.5, {1, 1, 1}, extinction}, {0.5, {0, 1, 0}, 2}, {1, {0, 1, 0}, 2}});
@@ -231,7 +231,7 @@ TEST(Attribute, LeavesDepthsAndScalarsAsTheyAre) {
     scene.render<DoubleSource>(without);
     scene.render<DoubleSourceOf<projection::AttributeSegments>>(with);
     ASSERT_GT(without.kept.size(), 1000u);
-    std::sort(without.kept.begin(), without.kept.end());  // flushes occur at other times: attributes need memory
+    std::sort(without.kept.begin(), without.kept.end());  // attributes need memory, so flushes occur at other times
     std::sort(with.kept.begin(), with.kept.end());
     EXPECT_EQ(with.kept, without.kept);
   }

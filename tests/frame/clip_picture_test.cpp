@@ -22,7 +22,8 @@
 #include "tessera/session.hpp"
 #include "volume/render.hpp"
 
-/// Images of meshes whose cells are cut, compared with the reference's of the whole mesh along the kept parts of rays.
+/// Images of meshes whose cells are cut, compared with the reference's images of the uncut mesh, in which rays are
+/// limited to the parts that are kept.
 namespace tessera::frame::clip_picture_test {
 namespace {
 
@@ -81,7 +82,7 @@ TEST(ClipPicture, MatchesShortenedRays) {
               worst, excused, pixels);
 }
 
-/// Rays in the planes of a box, and of cells: a rule decides which of them are inside, not chance.
+/// Rays in the sides of a box and in faces of cells: a fixed rule, not rounding, decides which of them are inside.
 TEST(ClipPicture, HoldsAlongTheAxes) {
   const scene::TetMesh mesh = datasets::regular_split(4, 4, 4, glm::dvec3(0.25), glm::dvec3(-0.5));
   scene::TetMesh cut = mesh;
@@ -206,7 +207,7 @@ TEST(ClipPicture, OfVolumesMatchesShortenedRays) {
       for (const HalfSpace& side : half_spaces_of({glm::min(a, b), glm::max(a, b)})) clip.push_back(side);
     }
     scene::Camera camera = random_camera(random, (box.low + box.high) / 2.0, glm::length(extent));
-    if (random.chance(0.3)) {  // along an axis, some rays in the planes
+    if (random.chance(0.3)) {  // along an axis, so that some rays are in the planes
       const int axis = random.below(3);
       camera.position = camera.focal_point;
       camera.position[axis] += 4 * glm::length(extent);

@@ -39,13 +39,14 @@ Clipping random_clipping(Random& random) {
   Clipping c;
   c.mesh = datasets::cube(2 + random.below(4), random.uniform(0, 0.2), random.bits());
   c.clip = random_clip(random, c.mesh, c.words);
-  if (random.chance(0.3)) {  // the field is the plane's distance, so each of its values is on a parallel plane
+  if (random.chance(0.3)) {  // the field is the distance from the plane, so its iso-surfaces are parallel planes
     const HalfSpace plane = c.clip.front();
     const glm::dvec3 normal = glm::normalize(plane.normal);
     const double offset = random.uniform(-1, 1), scale = random.chance(0.5) ? 1 : random.power(-3, 3);
     for (std::size_t v = 0; v < c.mesh.positions.size(); ++v)
       c.mesh.scalars[v] = (offset + glm::dot(normal, c.mesh.positions[v] - plane.point)) * scale;
-    // In the plane, where it is the cut face or nothing, and close to it, in pieces however thin.
+    // Iso-surfaces in the plane, where they are the cut face or nothing, and close to it, where pieces may be very
+    // thin.
     for (const double distance : {0.0, 1e-2, 1e-4, 1e-6, -1e-3})
       if (random.chance(0.7))
         c.surfaces.iso.push_back({(offset + distance) * scale, glm::dvec3(random.uniform(0, 1)), 0.6});

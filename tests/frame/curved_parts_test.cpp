@@ -88,7 +88,8 @@ TEST(CurvedParts, MatchTheDivisionOfTheWhole) {
         std::mutex mutex;
         std::vector<Corners> found;
         exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-          // With four ranks the last has no cells; a larger limit of another rank has no effect beyond the smallest.
+          // With four ranks, the last one has no cells. Rank 1 has a larger limit, which has no effect because the
+          // smallest applies.
           const auto self = static_cast<std::size_t>(transport.rank()),
                      parts = static_cast<std::size_t>(std::min(ranks, 3));
           const auto first = [&](std::size_t part) { return std::min(cells, cells * part / parts); };
@@ -107,7 +108,7 @@ TEST(CurvedParts, MatchTheDivisionOfTheWhole) {
     }
 }
 
-// Whether the arrays are borrowed or converted, and whichever ranks have the cells.
+// This must hold whether the arrays are borrowed or converted, and for any distribution of the cells over ranks.
 TEST(CurvedParts, CellsGivenTwiceAreCounted) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, scalars = {0, 1, 2, 3, 4};
   const std::vector<std::uint32_t> tets = {0, 1, 2, 3, 1, 2, 3, 4, 2, 1, 0, 3, 0, 1, 2, 4, 3, 2, 1, 0};

@@ -60,7 +60,7 @@ struct Case {
   std::string words;
 };
 
-/// As smooth as a mesh must be for the requested small errors: few and nearly straight cells.
+/// A random mesh that is smooth enough for the requested small error: few and nearly straight cells.
 Case random_case(Random& random, double accuracy) {
   std::vector<io::testing::Kind> kinds = io::testing::kinds;
   std::erase_if(kinds, [](const io::testing::Kind& k) { return !is_in_reference(k); });
@@ -75,7 +75,7 @@ Case random_case(Random& random, double accuracy) {
   const auto field = [=](const glm::dvec3& p) {
     return p.x + 0.5 * p.y - p.z + wave * std::sin(2 * p.x + phase.z) * std::cos(2 * p.y - p.z);
   };
-  // Sides of serendipity cells do not match others' if cells are rotated.
+  // If serendipity cells are rotated, their sides do not match those of their neighbours.
   return {io::testing::warped_box(kind, 1 + random.below(2), warp, field, random.chance(0.5)),
           "type " + std::to_string(static_cast<int>(kind.type)) + " of " + std::to_string(kind.nodes) + " nodes"};
 }

@@ -53,7 +53,7 @@ scene::DeepImage deep(const scene::SampleSource& source, const scene::Camera& ca
   return frame::deep_image(source, camera, size, f, settings, 0, size.height);
 }
 
-/// Largest difference of a composited pixel from the exact one that ends at `z`, or continues without end.
+/// Largest difference between a composited pixel and the exact one, for rays that end at `z` (infinite: never).
 double error_at(const scene::DeepImage& image, const scene::SampleSource& source, scene::Camera camera,
                 const scene::TransferFunction& function, double z,
                 scene::Emission emission = scene::Emission::absorption) {
@@ -87,7 +87,7 @@ TEST(DeepGrid, FlattenedItIsThePicture) {
           constexpr auto independent = scene::Emission::independent;
           EXPECT_LT(error_at(deep(*source, camera, function, 1e-3, independent), *source, camera, function, HUGE_VAL,
                              independent),
-                    1e-4);  // light of the whole path, up to 10 per pixel
+                    1e-4);  // the light along the whole path is up to 10 per pixel
         }
     }
 }

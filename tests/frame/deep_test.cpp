@@ -114,7 +114,7 @@ void expect_promise(const scene::TetMesh& mesh, const Camera& camera, ImageSize 
   const DeepImage deep = written_and_read(made);
   expect_tidy(deep);
   EXPECT_GT(deep.samples.size(), 0u);
-  double brightest = 1;  // with independent emission light is not bounded by 1: floats round it in proportion
+  double brightest = 1;  // with independent emission, light may exceed 1, and rounding grows with it
   for (const float v : image.rgba) brightest = std::max(brightest, static_cast<double>(v));
   EXPECT_LT(largest_difference(deep, image, HUGE_VAL, {}), 1e-5 * brightest);
   for (std::size_t p = 0; p < image.depth.size(); ++p)
@@ -168,7 +168,7 @@ TEST(Deep, KeepsItsPromiseForIndependentEmission) {
 }
 
 TEST(Deep, OneTetWithASharpTransferFunctionIsCutAsFinelyAsItNeeds) {
-  // All matter is within a hundredth of the range of the cell's scalars, and it is thick.
+  // All matter is within a hundredth of the range of the cell's scalars, and is optically thick.
   const TransferFunction sharp({{0.30, {1, 0, 0}, 0},
                                 {0.31, {0, 1, 0}, 400},
                                 {0.32, {0, 0, 1}, 0},
@@ -206,8 +206,8 @@ TEST(Deep, GivesTheSameSamplesForAnyThreadsTilesAndMemory) {
   DeepImage expected;
   const Image image = Renderer(mesh, exact()).render(oblique(), size, function, nullptr, &expected);
   const Image alone = Renderer(mesh, exact()).render(oblique(), size, function);
-  // The flat image made together with a deep one is in double precision, the separate one on the integer lattice in
-  // float: equal up to what `exact` promises.
+  // Together with a deep image, the flat image is computed in double precision; alone, in float on the integer lattice.
+  // They are equal up to what `exact` promises.
   for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(image.rgba[i], alone.rgba[i], 2e-6);
   for (const int threads : {1, 3})
     for (const int tile : {5, 32, 128})

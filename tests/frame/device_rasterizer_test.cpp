@@ -140,7 +140,7 @@ TEST(DeviceRasterizer, TilesOfAnySizeAgree) {
   const Image one = rendered(setup, small_cube())[0].image;
   for (const int size : {5, 64}) {
     setup.tile_size = size;
-    EXPECT_LT(difference(rendered(setup, small_cube())[0].image, one), 1e-6);  // keys are cut at other steps
+    EXPECT_LT(difference(rendered(setup, small_cube())[0].image, one), 1e-6);  // keys are truncated to other steps
   }
 }
 
@@ -184,7 +184,7 @@ TEST(DeviceRasterizer, TheCpuRasterizesScenesTooThickForTheLattice) {
   TESSERA_NEEDS_OSMESA();
   const scene::TetMesh mesh = small_cube();
   GlJobSetup setup = on_device();
-  // Too thick for the lattice.
+  // This matter is too dense for the lattice.
   setup.function = scene::TransferFunction({{0, {1, 0, 0}, 0}, {1, {0, 1, 0}, 5000}});
   const auto frames = rendered(setup, mesh);
   EXPECT_EQ(frames[0].statistics.cells_on_device, 0u);

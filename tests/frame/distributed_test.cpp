@@ -62,7 +62,7 @@ Settings exact() {
 
 using Parts = std::vector<scene::TetMesh>;
 
-/// Contiguous ranges of equal size in file order. Parts store each tet's index in the whole as original_cell, like
+/// Contiguous ranges of equal size in file order. Parts store each tet's index in the whole mesh as original_cell, like
 /// datasets::parts.
 Parts slices(const scene::TetMesh& mesh, std::size_t count) {
   Parts parts(count, mesh);
@@ -118,7 +118,8 @@ std::vector<FinishedFrame> render_once(const Parts& parts, const Shape& shape, c
 
 bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
 
-/// Each projector separately, as on different machines, except images for which projectors work together.
+/// Renders with projectors that share nothing, as on different machines. Compares the images with those of projectors
+/// that work together.
 std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
                                   const std::vector<FrameJob>& jobs, const TransferFunction& function,
                                   double diagonal = 4, float longest_edge = 0) {
@@ -131,7 +132,7 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
   for (std::size_t i = 0; i < std::min(shared.size(), frames.size()); ++i) {
     const Image &one = frames[i].image, &other = shared[i].image;
     EXPECT_EQ(one.rgba.size(), other.rgba.size());
-    // Parts are rounded per run.
+    // Otherwise, the light of each part's runs is rounded.
     if (settings.exchange == Exchange::segments && settings.render.mesh.rasterizer != Rasterizer::scanline)
       EXPECT_TRUE(same_bits(one, other)) << "frame " << i;
     else
@@ -166,7 +167,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
         for (const int threads : {1, 2}) {
           if (!some.next()) continue;
           Parts numbered = parts;
-          if (cells) numbered = slices(mesh, n);  // with_cell_data has original cells, which parts() keeps
+          if (cells) numbered = slices(mesh, n);  // with_cell_data() sets original_cell, and parts() would keep it
           DistributedSettings settings;
           settings.render = exact();
           settings.render.threads = threads;
@@ -189,7 +190,7 @@ TEST(Distributed, SegmentsOfAPlateauAtAStepGiveTheBitsOfASingleProcess) {
   const ImageSize size{61, 43};
   for (const int places : {1, 256})
     for (const bool lattice : {true, false}) {
-      // In double precision only the last places of doubles need care.
+      // In double precision, only values that differ in the last places of doubles are critical.
       const scene::TetMesh mesh = plateau(1, places, lattice ? LastPlace::of_float : LastPlace::of_double, false, 11);
       Settings alone = exact();
       alone.use.lattice = lattice;
@@ -221,7 +222,7 @@ TEST(Distributed, TuplesOfTheScanlineRasterizerGiveItsPictureOfASingleProcess) {
   const Image expected = Renderer(mesh, settings.render).render(oblique(), size, six_knots());
   const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 4), {5, 3, 2}, settings,
                              {{oblique(), size}}, six_knots(), 4, projection::longest_edge(mesh));
-  // No ray of this mesh meets two segments with equal z_back, whose order the paper does not define.
+  // No ray of this mesh meets two segments with equal z_back; the paper does not define their order.
   EXPECT_TRUE(same_bits(frames.front().image, expected));
   settings.exchange = Exchange::runs;
   EXPECT_THROW(render(slices(mesh, 2), {2, 2, 2}, settings, {{oblique(), size}}, six_knots()), scene::Error);
@@ -237,8 +238,8 @@ TEST(Distributed, TabledIntegratorsGiveThePictureOfASingleProcess) {
     Renderer alone(mesh, settings.render);
     const Image expected = alone.render(oblique(), size, six_knots());
     EXPECT_TRUE(same_bits(alone.render(oblique(), size, six_knots()), expected));  // the cached table
-    // Entries are 1 / 63 of the range apart, compared with ramps a tenth of it wide: near a kink an eighth of 1 / 6 of
-    // its rise.
+    // Entries of the table are 1 / 63 of the range apart, and ramps are a tenth of the range wide. So the error near a
+    // kink is an eighth of 1 / 6 of a ramp's rise.
     EXPECT_LT(difference(expected, exact_picture), 2e-2);
     EXPECT_GT(difference(expected, exact_picture), 0);
     for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
@@ -277,7 +278,7 @@ std::uint64_t reference_runs(const Parts& parts, const Camera& camera, ImageSize
       for (int x = 0; x < size.width; ++x) {
         double back = -1;
         for (const reference::RaySegment& segment : reference.segments(x + 0.5, y + 0.5)) {
-          // Cells are 0.2 long; the two sides of a shared face differ only by rounding.
+          // Cells are 0.2 long. The depths of a shared face, computed in its two cells, differ only by rounding.
           if (std::fabs(segment.front - back) > 1e-9) ++runs;
           back = segment.back;
         }
@@ -301,7 +302,7 @@ TEST(Distributed, RunsCostTheirRecordsAndLittleMoreAndNeverMoreThanSegments) {
     const FrameStatistics runs = bytes(parts, Exchange::runs), segments = bytes(parts, Exchange::segments);
     const std::uint64_t counted = reference_runs(parts, oblique(), size, visible);
     EXPECT_LE(runs.fragments, counted);
-    EXPECT_GE(static_cast<double>(runs.fragments), 0.999 * static_cast<double>(counted));  // all of them are visible
+    EXPECT_GE(static_cast<double>(runs.fragments), 0.999 * static_cast<double>(counted));  // all runs are visible
     EXPECT_LE(static_cast<double>(runs.exchange_bytes), 1.1 * static_cast<double>(counted * 32));
     EXPECT_LE(runs.exchange_bytes, segments.exchange_bytes);
   }
@@ -318,7 +319,7 @@ TEST(Distributed, ProjectorsThatShareMemoryMakeEachTileOnce) {
     settings.render.use.sharing = shared;
     runs[shared ? 1 : 0] = render_once(parts, {4, 4, 4}, settings, jobs, six_knots(), 4, 0).at(0).statistics.fragments;
   }
-  // Working together they send finished pixels; scattered parts give several runs per visible pixel.
+  // Projectors that work together send finished pixels. Otherwise, scattered parts give several runs per visible pixel.
   EXPECT_EQ(runs[1], 0u);
   EXPECT_GT(runs[0], 96u * 80u);
 }
@@ -411,7 +412,7 @@ TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
 /// More segments overlap in depth than fit into the projectors' memory, after some have already been sent.
 TEST(Distributed, CellsThatOverlapBeyondMemoryAreSentOnce) {
   scene::TetMesh mesh = leaning_stack(20000);
-  const scene::TetMesh front = datasets::cube(4, 0.2);  // its runs have ended and been sent when memory runs out
+  const scene::TetMesh front = datasets::cube(4, 0.2);  // the runs of this mesh have been sent when memory runs out
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   for (const glm::dvec3& p : front.positions) mesh.positions.emplace_back(0.2 * p.x, 0.2 * p.y, 6 + p.z);
   mesh.scalars.insert(mesh.scalars.end(), front.scalars.begin(), front.scalars.end());

@@ -41,7 +41,7 @@ std::shared_ptr<const TriangleMesh> triangles(std::vector<glm::dvec3> points) {
   return mesh;
 }
 
-/// A square across the z axis.
+/// A square perpendicular to the z axis.
 std::shared_ptr<const TriangleMesh> square(double half, double z) {
   return triangles(
       {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, -half, z}, {half, half, z}, {-half, half, z}});
@@ -51,7 +51,7 @@ TEST(BoundaryFaces, OfACubeAreItsSidesTurnedOutwardOnceEach) {
   const scene::TetMesh mesh = datasets::regular_split(3, 4, 5, {1, 1, 1}, {0, 0, 0});
   const BoundaryFaces boundary = boundary_faces(mesh);
   EXPECT_EQ(boundary.mesh.triangles.size(), 2u * 2 * (3 * 4 + 4 * 5 + 5 * 3));
-  double volume = 0;  // a third of the flux of x through the surface
+  double volume = 0;  // a third of the flux of the position through the surface
   for (const auto& t : boundary.mesh.triangles) {
     const glm::dvec3 &a = boundary.mesh.points[t[0]], &b = boundary.mesh.points[t[1]], &c = boundary.mesh.points[t[2]];
     volume += glm::dot(a, glm::cross(b, c)) / 6;
@@ -123,7 +123,7 @@ TEST(TriangleSurface, HasNeitherGapsNorDuplicateHitsAtItsEdges) {
   scene::Camera camera = view(ProjectionKind::orthographic, {1 / 16., 1 / 16., 4});
   camera.focal_point = {1 / 16., 1 / 16., 0};
   camera.parallel_scale = 1;
-  for (const int n : {16, 32}) {  // pixels of 1/8 and 1/16
+  for (const int n : {16, 32}) {  // pixels with a side of 1/8 or 1/16
     const auto image = Renderer(mesh, exact(surfaces)).render(camera, {n, n}, clear());
     int covered = 0;
     for (std::size_t p = 0; p < image.depth.size(); ++p) {
@@ -191,8 +191,8 @@ TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItI
   surfaces.light = even_light;
   surfaces.boundary = {{glm::dvec3(0, 1, 0), 1}};
   surfaces.triangles = {{square(0.97, 1), glm::dvec3(1, 0, 0), 0.5}};
-  // The eye is so little above the side z = 1 that the line in which its plane cuts the side is 1/20 pixel away from
-  // the centres of a row.
+  // The eye is slightly above the side z = 1, so that the plane of the eye cuts the side in a line that is 1/20 pixel
+  // away from the centres of a row.
   const scene::ImageSize size{40, 40};
   scene::Camera camera = view(ProjectionKind::orthographic, {0.013, -0.3, 1});
   camera.parallel_scale = 0.5;
@@ -352,7 +352,7 @@ TEST(TriangleSurface, MayHaveValuesBeyondThoseOfTheMesh) {
 }
 
 TEST(TriangleSurface, FarLargerThanTheMeshDoesNotMakeItsDepthsCoarse) {
-  // The lattice extends over the ground; a step of it is a part of the cube.
+  // The lattice extends over the ground, so its step grows with the ground and becomes coarse for the cube.
   for (const double size : {1e2, 1e4, 1e6})
     for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent}) {
       Surfaces surfaces;
@@ -364,7 +364,7 @@ TEST(TriangleSurface, FarLargerThanTheMeshDoesNotMakeItsDepthsCoarse) {
 }
 
 TEST(TriangleSurface, DoesNotMultiplyThinCellsBehindIt) {
-  // Forty cells, each as thick as a step of the lattice, which extends to the second square.
+  // There are forty cells, each as thick as a step of the lattice. The lattice extends to the second square.
   const scene::TetMesh mesh = datasets::regular_split(2, 2, 40, {1, 1, 2e-9}, {-1, -1, 0});
   Surfaces surfaces;
   surfaces.triangles = {{square(0.9, 8e-8), glm::dvec3(0, 0, 1), 0.5}, {square(0.5, -2), glm::dvec3(1, 0, 0), 0.5}};
@@ -449,8 +449,8 @@ TEST(FaceSurfaces, ArePointsAmongDeepSamples) {
     for (const auto& s : deep.pixel(p)) points += s.z == s.z_back ? 1u : 0u;
   }
   EXPECT_GT(points, 300u);
-  // A plane inserted in front of a surface hides it: the samples are those of a frame whose far clipping plane is
-  // there.
+  // A plane inserted in front of a surface hides the surface: the samples are those of a frame whose far clipping plane
+  // is at the same depth.
   const double plane = 5.3;
   scene::Camera clipped = camera;
   clipped.clipping_range = scene::ClippingRange{0.1, plane};

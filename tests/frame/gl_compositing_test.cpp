@@ -60,7 +60,7 @@ TEST(GlCompositing, FragmentShadersGiveThePictureOfTheCpusSamples) {
     setup.gl.half = false;
     EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 1e-4);
     setup.gl.half = true;
-    // About 20 blends, each with a half's error of 2^-12, of values around one.
+    // About 20 blends of values around one, each rounded to half precision with an error of 2^-12.
     EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 20 * 0x1p-12);
   }
 }
@@ -120,7 +120,8 @@ TEST(GlCompositing, AutomaticFallsBackToTheCpuAndReportsIt) {
   const Image cpu = rendered(setup, mesh)[0].image;
   setup.backends = {Backend::automatic};
   setup.gl.fault = compositor::GlFault::lost;
-  setup.frames = 3;  // at least as many batches: a batch has tiles of one frame, and their number depends on timing
+  // Three frames give at least 3 batches: a batch has tiles of one frame only. The number of batches depends on timing.
+  setup.frames = 3;
   for (const int after : {0, 2}) {
     setup.gl.fault_after = after;
     const auto frames = rendered(setup, mesh);

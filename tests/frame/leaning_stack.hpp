@@ -10,8 +10,8 @@
 
 namespace tessera::frame {
 
-/// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; next to them a coarse
-/// box.
+/// A stack of `layers` slabs with a small square as base, next to a coarse box. Each slab has 6 tets and is so oblique
+/// that all slabs overlap in depth.
 inline scene::TetMesh leaning_stack(int layers) {
   scene::TetMesh mesh = datasets::cube(2, 0);
   const double side = 0.02, lean = 2.0;

@@ -31,8 +31,8 @@ constexpr scene::ImageSize size{32, 24};
 
 const scene::Camera oblique = view(scene::ProjectionKind::orthographic, {3.1, 2.3, 4.2});
 
-/// Waves of colour and extinction over the logarithm of scalars from 10^-decades to 1; with a step in the steepest part
-/// if `stepped`.
+/// A function whose colour and extinction are waves over the logarithm of the scalar, from 10^-decades to 1. If
+/// `stepped`, it has a step in the steepest part.
 TransferFunction logarithmic(double decades, std::size_t count, double dense, bool stepped = false) {
   std::vector<scene::Knot> knots;
   for (std::size_t n = 0; n < count; ++n) {
@@ -44,7 +44,7 @@ TransferFunction logarithmic(double decades, std::size_t count, double dense, bo
   return TransferFunction(knots);
 }
 
-/// The pieces of a function whose change of a pixel is the change of its extinction.
+/// The pieces of a function, with the change of extinction as the change of a pixel.
 std::vector<FunctionPiece> pieces_of(const TransferFunction& function) {
   std::vector<FunctionPiece> pieces;
   const auto knots = function.knots();
@@ -61,7 +61,7 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
       SCOPED_TRACE(decades);
       constexpr double low = -0.1, high = 1.2, most_error = 1e-5;
       TransferFunction function = logarithmic(decades, 200, 1, stepped);
-      if (stepped) {  // also at the highest scalar
+      if (stepped) {  // a step at the highest scalar, too
         std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
         knots.push_back({high, {0, 1, 0}, 0.5}), knots.push_back({high, {0, 0, 1}, 0});
         function = TransferFunction(knots);
@@ -89,8 +89,8 @@ TEST(MagnifiedRanges, HaveTheFunctionOnceAndAreFineEnoughForIt) {
         const scene::Knot expected = function.evaluate(s), knot = found->function.evaluate(at);
         EXPECT_NEAR(knot.extinction, expected.extinction, 1e-9);
         EXPECT_NEAR(knot.color.y, expected.color.y, 1e-9);
-        // Half of a float's last place further, or more. The cells with scalars so near to the end of a range, or to a
-        // step, are cut there.
+        // `moved` is further by half of a float's last place or more. Cells with scalars so near to the end of a range,
+        // or to a step, are cut at that end or step.
         const double moved = at + std::abs(at - found->lattice.scalar_origin) * 0x1p-24;
         const auto cut = [&](double end) { return at <= end && end <= moved; };
         const double step = function.knots()[2].value;
@@ -196,9 +196,9 @@ TEST(LogarithmicFunctions, CutOnlyTheCellsThatReachASteepRange) {
   };
   scene::TetMesh mesh = datasets::cube(4, 0.2);
   for (double& s : mesh.scalars) s = 0.3 + 0.5 * s;
-  mesh.scalars[0] = 0;  // the function's steep part is in the mesh's range
+  mesh.scalars[0] = 0;  // so that the mesh's range contains the function's steep part
   EXPECT_LT(in_double(mesh).first * 4, in_double(mesh).second);
-  // Zero is below the smallest knot, and nearer to it than the lattice's scalars are to each other.
+  // Zero is below the smallest knot, at a distance that is smaller than a step of the lattice's scalars.
   mesh.association = scene::Association::cell;
   mesh.scalars.assign(mesh.tets.size(), 0);
   for (std::size_t t = 0; t < mesh.tets.size(); t += 3) mesh.scalars[t] = 1;

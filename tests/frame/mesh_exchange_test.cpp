@@ -111,7 +111,7 @@ void expect_whole(const Result& result, const scene::TetMesh& mesh, const std::v
   EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
 }
 
-const ExchangeLimits small{2000, 5000};  // bytes: many messages and rounds for small meshes
+const ExchangeLimits small{2000, 5000};  // limits in bytes: small meshes need many messages and rounds
 
 TEST(MeshExchange, EveryTetReachesItsOneOwnerWithItsBits) {
   scene::TetMesh mesh = datasets::cube(5);
@@ -141,7 +141,7 @@ TEST(MeshExchange, PartsDependOnTheMeshAndNotOnItsReaders) {
       const auto other = exchange(mesh, start, 4, {0, 2, 3}, {kind, 9}, small, 5);
       for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(other.parts[r].global_tet, reference.parts[r].global_tet);
     }
-    // With one reader there is one numbering of vertices, however it was cut into messages.
+    // With one reader, the numbering of vertices does not depend on how the mesh is cut into messages.
     const auto chunked = exchange(mesh, Start::first_rank, 4, {0, 2, 3}, {kind, 9}, small);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(chunked.parts[r].mesh.tets, reference.parts[r].mesh.tets);
@@ -197,7 +197,7 @@ TEST(MeshExchange, NoMessageIsMuchLargerThanAsked) {
     redistribute(transport, std::move(part), facts, {}, projectors, transport.rank() == 0 ? &trace : nullptr, small);
     if (transport.rank() != 0) return;
     const auto sent = transport.sent(Channel::mesh);
-    EXPECT_GE(sent.messages, sent.bytes / (small.chunk_bytes + 200));  // up to one tet more than the limit
+    EXPECT_GE(sent.messages, sent.bytes / (small.chunk_bytes + 200));  // a message may exceed the limit by one tet
     const auto spans = trace.spans();
     ASSERT_EQ(spans.size(), 1u);
     EXPECT_STREQ(spans[0].stage, "partition");

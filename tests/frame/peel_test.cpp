@@ -24,8 +24,8 @@
 #include "tessera/communicator.hpp"
 #include "tessera/session.hpp"
 
-/// Opacity peeling: every layer equals the reference's, composited they equal the image, and ranks and threads change
-/// no bit.
+/// Opacity peeling: every layer equals the reference's layer, the composited layers equal the image, and the bits do
+/// not depend on the numbers of ranks and threads.
 namespace tessera::peel_test {
 namespace {
 
@@ -87,7 +87,8 @@ void expect_the_image(const RenderedFrame& frame, double bound) {
   }
 }
 
-/// Every pixel of every layer is within 1e-5 of the reference, except one in a hundred whose neighbours differ.
+/// Every pixel of every layer is within 1e-5 of the reference, except at most one in a hundred pixels, whose neighbours
+/// differ.
 void expect_the_reference(const Dataset& data, const Settings& settings, const View& view,
                           const TransferFunction& function, double threshold, int layers) {
   SCOPED_TRACE(::testing::Message() << "threshold " << threshold << ", layers " << layers);
@@ -143,7 +144,7 @@ TEST(Peel, LayersOfMeshesAreMadeOnTheLattice) {
     }
 }
 
-// In such matter a segment may be opaque in single precision, and hide all that follows.
+// In dense matter, a segment may be opaque in single precision and hide all segments behind it.
 TEST(Peel, LayersOfDenseMatterMatchTheReference) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::cube(4)));
   for (const double extinction : {30.0, 100.0, 300.0, 600.0}) {
@@ -167,7 +168,7 @@ TEST(Peel, LayersOfGridsMatchTheReference) {
     }
 }
 
-/// Where extinction is almost zero at a cut, rounding moves the cut.
+/// Where the extinction is almost zero at the boundary of two layers, rounding moves the boundary.
 TEST(Peel, LayersBeginAtTheReferencesDepths) {
   const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 8);
   const View view = view_of(ProjectionKind::perspective);

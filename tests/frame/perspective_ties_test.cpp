@@ -43,14 +43,14 @@ struct View {
     per_tangent = 0.5 * size.height / std::tan(angle * (std::numbers::pi / 360));
   }
 
-  /// From the eye, per unit of depth.
+  /// The vector from the eye to a pixel position, per unit of depth.
   [[nodiscard]] glm::dvec3 towards(double x, double y) const {
     return basis.forward + basis.right * ((x - 0.5 * size.width) / per_tangent) +
            basis.up * ((0.5 * size.height - y) / per_tangent);
   }
 
-  /// The mesh moved so that it appears `shift` pixels further left, and a thousandth of that further up. (No edge of
-  /// these tests is so steep that the square would be needed.)
+  /// The mesh moved so that it appears `shift` pixels further left and `shift` / 1000 pixels further up. (The edges of
+  /// these tests are not so steep that shift^2 would be needed.)
   [[nodiscard]] TetMesh shifted(TetMesh mesh, double shift) const {
     for (glm::dvec3& p : mesh.positions) {
       const double part = shift * glm::dot(basis.forward, p - camera.position) / per_tangent;
@@ -93,8 +93,8 @@ double difference(const Picture& a, const Picture& b, std::size_t pixel) {
 
 constexpr double visible = 1e-2;
 
-/// Expects the image to be the limit of those of the shifted mesh, for each method. Returns the number of pixels that
-/// the rule decides, where the opposite shift shows something else.
+/// Expects, for each method, that the image is the limit of the images of the shifted mesh. Returns the number of
+/// pixels that the rule decides: those where the opposite shift gives another result.
 int expect_the_limit(const TetMesh& mesh, const View& view) {
   int decided = 0;
   for (const auto& [name, picture] : {std::pair<const char*, Method>{"lattice", renderer(true)},
@@ -105,7 +105,7 @@ int expect_the_limit(const TetMesh& mesh, const View& view) {
     int wrong = 0;
     decided = 0;
     for (std::size_t pixel = 0; pixel < at.size() / 4; ++pixel) {
-      // Ten times the shift changes the result ten times as much, or else a distant edge is between.
+      // A shift that is ten times as large changes the result ten times as much, unless a distant edge is in between.
       const double change = difference(far, near, pixel);
       if (change > visible) continue;
       wrong += difference(at, near, pixel) > 1e-5 + change;
@@ -116,7 +116,8 @@ int expect_the_limit(const TetMesh& mesh, const View& view) {
   return decided;
 }
 
-/// A box of voxels, six tets each: from `corner` along `u`, `v`, `w`, one voxel each. Cell data at random, or constant.
+/// A box of voxels, each divided into six tets. It begins at `corner`; `u`, `v` and `w` are the edges of a voxel. Cell
+/// data are random, or constant.
 TetMesh box(const std::array<int, 3>& voxels, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v,
             const glm::dvec3& w, bool constant = false) {
   TetMesh mesh = datasets::regular_split(voxels[0], voxels[1], voxels[2], glm::dvec3(1));
@@ -143,7 +144,8 @@ std::vector<View> views() {
           {{0.6, 1.1, 2.2}, {-0.3, -0.4, -0.8}, {0.9, 0.1, 0.2}, 10, {64, 64}}};
 }
 
-/// The plane of the eye and a column or row of centres: two directions in it and one across, to the right or down.
+/// The plane through the eye and a column or row of pixel centres: two directions in the plane, and one across it, to
+/// the right or down.
 struct SightPlane {
   glm::dvec3 along, into, across;
   SightPlane(const View& view, bool column, int number) {
@@ -191,8 +193,8 @@ TEST(PerspectiveTies, LatticesWithCellDataAreTheLimitOfShiftedLattices) {
 }
 
 TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedLattices) {
-  // All vertical and horizontal faces are in planes of the eye and centres, all edges along the view on rays of
-  // centres.
+  // All vertical and horizontal faces are in planes through the eye and pixel centres, and all edges along the view are
+  // on rays through pixel centres.
   int decided = 0, scenes = 0;
   for (const View& view : views()) {
     SCOPED_TRACE("scene " + std::to_string(scenes++));
@@ -208,8 +210,8 @@ TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedLattices) {
 }
 
 TEST(PerspectiveTies, MeshesAroundTheEyeAreTheLimitOfShiftedMeshes) {
-  // The eye is inside, in a plane of faces, on an edge, on a vertex; at the mesh's surface; with vertices in its plane
-  // and behind it.
+  // The eye is in the mesh (in a plane of faces, on an edge or on a vertex), at its surface, or next to it. Vertices
+  // are in the eye's plane and behind the eye.
   int decided = 0, scenes = 0;
   bool column = true;  // alternating
   test::SomeCases some(5);
@@ -224,7 +226,7 @@ TEST(PerspectiveTies, MeshesAroundTheEyeAreTheLimitOfShiftedMeshes) {
       const glm::dvec3 position = view.camera.position;
       TetMesh mesh = box({4, 4, 4}, position - eye.x * u - eye.y * v - eye.z * w, u, v, w);
       for (glm::dvec3& p : mesh.positions)
-        if (glm::length(p - position) < 1e-9) p = position;  // not away from it by rounding
+        if (glm::length(p - position) < 1e-9) p = position;  // rounding must not move this vertex away from the eye
       decided += expect_the_limit(mesh, view);
     }
   EXPECT_GT(decided, 100);

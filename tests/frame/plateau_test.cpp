@@ -8,7 +8,7 @@
 #include "frame/plateaus.hpp"
 #include "reference/judge.hpp"
 
-/// Fields that are within some last places of a step's value over whole regions, like saturated ones.
+/// Fields that differ from a step's value by only some last places over whole regions, like saturated fields.
 namespace tessera::frame::plateau_test {
 namespace {
 

@@ -14,7 +14,7 @@ namespace tessera::frame {
 
 enum class LastPlace { of_float, of_double };
 
-/// The number `places` last places above `value`; below it if negative.
+/// Returns the number that is `places` last places above `value`, or below it if `places` is negative.
 inline double beside(double value, int places, LastPlace kind) {
   const double step = kind == LastPlace::of_float ? double{std::nextafter(static_cast<float>(value), 1e30f)} - value
                                                   : std::nextafter(value, 1e300) - value;
@@ -49,7 +49,8 @@ inline scene::TetMesh plateau(double level, int places, LastPlace kind, bool cel
   return mesh;
 }
 
-/// Almost clear below `level`, dense from there on, or the reverse, and another step halfway.
+/// A function that is almost clear below `level` and dense from `level` on (or the reverse, without `up`), with another
+/// step at half of `level`.
 inline scene::TransferFunction step_at(double level, bool up) {
   const scene::Knot clear{level, {0.1, 0.2, 0.9}, 0.05}, dense{level, {0.9, 0.6, 0.1}, 3};
   const glm::dvec3 green(0.2, 0.9, 0.2);

@@ -12,8 +12,8 @@
 #include "reference/small_meshes.hpp"
 #include "support/polyhedral_meshes.hpp"
 
-/// Images of polyhedra that fill a box with a linear field, compared with the reference's of the same box and field in
-/// a few tets without any polyhedron.
+/// Images of polyhedra that fill a box with a linear field, compared with the reference's images of the same box and
+/// field, divided into a few tets.
 namespace tessera::frame::polyhedra_picture_test {
 namespace {
 

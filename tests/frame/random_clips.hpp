@@ -16,10 +16,10 @@ inline glm::dvec3 any_vertex(Random& random, const scene::TetMesh& mesh) {
 
 struct RandomView {
   scene::Camera camera;
-  double extent;  ///< of the mesh: its box's diagonal
+  double extent;  ///< diagonal of the mesh's box
 };
 
-/// From a random place outside a mesh, which fills much of the image.
+/// A view from a random place outside the mesh. The mesh fills much of the image.
 inline RandomView random_view(Random& random, const scene::TetMesh& mesh) {
   const scene::Box box = scene::bounds(mesh);
   RandomView view{{}, glm::length(box.high - box.low)};

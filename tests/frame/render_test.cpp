@@ -138,7 +138,7 @@ TEST(Render, ScanlineIsPlanesToFloatRoundingWithEveryIntegrator) {
       const Image paper = Renderer(mesh, settings).render(oblique(), size, six_knots());
       settings.mesh.rasterizer = Rasterizer::planes;
       const Image ours = Renderer(mesh, settings).render(oblique(), size, six_knots());
-      // Depths are accurate to 5e-7 each, colours and extinctions of up to 8 change over scalars of 0.1.
+      // Depths are accurate to 5e-7 each; colours and extinctions change by up to 8 over a scalar range of 0.1.
       EXPECT_LT(largest_difference(paper, ours), 1e-5);
       EXPECT_GT(largest_difference(paper, ours), 0);
     }
@@ -204,7 +204,7 @@ TEST(Render, OpaqueMatterIsRightAndTheSameInAnyTilesAndThreads) {
   const ImageSize size{40, 40};
   const TransferFunction clear = six_knots();
   std::vector<scene::Knot> knots(clear.knots().begin(), clear.knots().end());
-  for (scene::Knot& knot : knots) knot.extinction = 40 * knot.extinction + 20;  // 3.5 units of it are opaque
+  for (scene::Knot& knot : knots) knot.extinction = 40 * knot.extinction + 20;  // a length of 3.5 units is opaque
   const TransferFunction function(knots);
   const reference::Reference reference(mesh, oblique(), size, function);
   for (const double accuracy : {0.0, 1e-4}) {
@@ -233,7 +233,7 @@ TEST(Render, AMeshWithoutCellsIsABlankPicture) {
 }
 
 TEST(Render, DepthIsThatOfTheFirstVisibleSample) {
-  // The scalar is the height z; matter begins at z = 0.25, seen from above at z = 5.
+  // The scalar is the height z. Matter begins at z = 0.25 and is seen from above, from z = 5.
   scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = mesh.positions[v].z;
   const TransferFunction function({{-1, {1, 1, 1}, 3}, {0, {1, 1, 1}, 3}, {0.25, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}});
@@ -265,7 +265,7 @@ TEST(Render, ScalesAndOffsetsOfTheSceneDoNotChangeTheImage) {
       most = std::max(most, static_cast<double>(std::abs(image.rgba[i] - expected.rgba[i])));
     return most;
   };
-  // Positions keep 53 bits: an offset of 7e6 cells leaves 1e-9 of a cell.
+  // Positions have 53 bits, so an offset of 7e6 cells leaves an error of 1e-9 of a cell.
   EXPECT_LT(distance(1e20, {0, 0, 0}), 1e-6);
   EXPECT_LT(distance(1e-20, {0, 0, 0}), 1e-6);
   EXPECT_LT(distance(1, {7e6, -3e6, 2e6}), 1e-6);
@@ -297,8 +297,8 @@ TransferFunction zigzag(int count, double least) {
 }
 
 TEST(Render, ScalarsRoundedEquallyAlongARayStayWithinTheBound) {
-  // A field that is constant except at two corners, in the middle of pieces in which colour and extinction change as
-  // fast as allowed: every segment has the same error.
+  // The field is constant except at two corners. Its value is in the middle of pieces of the function in which colour
+  // and extinction change as fast as allowed, so every segment has the same error.
   const ImageSize size{24, 24};
   for (const bool automatic : {false, true})
     for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent})

@@ -14,8 +14,8 @@
 namespace tessera::frame::scan_together_test {
 namespace {
 
-/// Noise, 45 voxels or 6 layers of cells high, with blanks. Counts the samples read; layers from `broken` on cannot be
-/// read.
+/// Noise with blanks on a grid that is 45 voxels high, which are 6 layers of cells. Counts the samples read; layers
+/// from `broken` on cannot be read.
 class NoiseSource final : public scene::SampleSource {
  public:
   explicit NoiseSource(std::int64_t broken = 1000) : SampleSource(noise_grid(), "noise"), broken_(broken) {
@@ -53,7 +53,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
     std::mutex mutex;
     int done = 0;
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-      // Twice in a row, as for a series whose second step is requested: the two must not mix.
+      // The scan runs twice in a row, as for a series whose second step is requested. The two scans must not mix.
       for (int time = 0; time < 2; ++time) {
         const NoiseSource source;
         const volume::CellRanges ranges = scan_together(transport, source);
@@ -65,8 +65,8 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
         EXPECT_EQ(ranges.range, expected.range);
         EXPECT_EQ(ranges.lanes.factor, expected.lanes.factor);
         EXPECT_EQ(ranges.lanes.term, expected.lanes.term);
-        // Each rank reads at most one layer of cells more than others, each of 8 voxels, and the samples above the
-        // last.
+        // Each rank reads at most one layer of cells (8 voxels) more than other ranks, and the samples above its last
+        // layer.
         EXPECT_LE(source.samples_read(), ((6 + ranks - 1) / ranks * 8 + 1) * layer) << ranks;
       }
     });
@@ -77,7 +77,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
 TEST(ScanTogether, AReadErrorOfOneRankEndsTheRunForAllWithItsMessage) {
   try {
     exchange::run_ranks(3, [&](exchange::Transport& transport) {
-      const NoiseSource source(40);  // in the last rank's share
+      const NoiseSource source(40);  // in the layers of the last rank
       scan_together(transport, source);
       ADD_FAILURE() << "rank " << transport.rank() << " went on";
     });

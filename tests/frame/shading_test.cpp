@@ -190,7 +190,7 @@ TEST(MeshShading, OfDeepPicturesMayBeCut) {
     const Image image = session.render(cut, function).image;
     for (std::size_t p = 0; p < image.depth.size(); ++p) {
       const auto seen = tests::composited(whole.deep.pixel(p), z, {0, 0, 0});
-      // There is a black plane; alpha belongs to it.
+      // Only colours are compared: with the black plane, alpha is 1.
       for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], image.rgba[4 * p + c], 1e-3) << z << ' ' << p;
     }
   }
@@ -217,7 +217,7 @@ TEST(MeshShading, IsRefusedWhereItCannotBe) {
   };
   Settings settings = shaded();
   settings.emission = Emission::independent;
-  refused(settings, "`shade`: shading needs emission");
+  refused(settings, "`shade`: shading does not support `emission` independent");
   settings = shaded();
   settings.mesh.rasterizer = Rasterizer::scanline;
   refused(settings, "`shade`: `rasterizer` scanline");

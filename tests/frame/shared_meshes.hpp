@@ -22,7 +22,7 @@ inline std::filesystem::path shared_mesh(const char* name) {
   return std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data" / name;
 }
 
-/// Why a test of it is skipped; empty if it can be read.
+/// Why a test of the mesh `name` is skipped; empty if the mesh can be read.
 inline std::string missing_mesh(const char* name) {
   if (!io::has_reader(io::Reader::vtk)) return "tessera-read-vtk is not installed";
   return std::filesystem::exists(shared_mesh(name)) ? "" : "no " + shared_mesh(name).string();

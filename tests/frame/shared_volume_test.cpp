@@ -114,7 +114,7 @@ TEST_F(SharedVolume, IsKeptOnceWithTheDescriptionOfOneProcess) {
 TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
   const auto file = zipped("v.nii.gz", test::nifti());
   ReadOptions options;
-  options.memory_bytes = 2 * 47;  // of 24 numbers of two bytes
+  options.memory_bytes = 2 * 47;  // the samples are 24 numbers of two bytes
   const io::VolumeFile alone = io::open_unscanned_volume(file);
   const std::vector<io::VolumeFile> by_one = opened(file, 1, options);
   const io::VolumeFile& kept = by_one[0];
@@ -172,7 +172,7 @@ TEST_F(SharedVolume, WithoutRoomForItEndsTheRunForAllWithARemedy) {
   EXPECT_EQ(ended.code, scene::ErrorCode::bad_input);
   for (const std::string part : {"v.nii.gz", "nowhere", "set TMPDIR to another directory"})
     EXPECT_NE(ended.message.find(part), std::string::npos) << ended.message;
-  // A single process needs none.
+  // A single process needs no directory for temporary files.
   EXPECT_EQ(opened(file, 1).size(), 1u);
 }
 
@@ -180,7 +180,8 @@ TEST(BrickMemory, IsTheBudgetMinusOtherMemory) {
   constexpr std::uint64_t mib = 1 << 20, brick = 33 * 33 * 33;
   const OtherMemory rest{200 * mib, 30 * mib, {512, 512}, 1};
   const std::uint64_t left = brick_memory(1024 * mib, rest, brick);
-  // The image twice (10 MiB), a thread, the heap; a hundredth for the overhead of each brick.
+  // Two copies of the image (10 MiB), a thread and the heap are subtracted, and a hundredth for the overhead of the
+  // bricks.
   EXPECT_LT(left, (1024 - 200 - 30 - 10) * mib);
   EXPECT_GT(left, (1024 - 200 - 30 - 10 - 20) * mib * 99 / 100);
   EXPECT_EQ(brick_memory(64 * mib, rest, brick), 8 * mib);

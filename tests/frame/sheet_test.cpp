@@ -6,7 +6,7 @@
 #include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 
-/// Thin dense sheets, in which a ray's path is a hundred-thousandth of their faces' range of depth.
+/// Thin dense sheets. A ray's path in a sheet is a hundred-thousandth of the depth range of the sheet's faces.
 namespace tessera::frame::sheet_test {
 namespace {
 
@@ -21,8 +21,8 @@ INSTANTIATE_TEST_SUITE_P(Frame, Sheets,
                                          Sheet{1.1e-3, 3.1, 0.042, 1.2, 131, 87},
                                          Sheet{6e-3, 2.2, 0.24, 3.1, 115, 220}));
 
-/// The eye looks along a sheet from next to it: depth is the sheet's length, rays at the window's edge pass through its
-/// thickness.
+/// The eye is next to a sheet and looks along it, so that the sheet's length is in the direction of depth. Rays at the
+/// window's edge cross the sheet's thickness.
 TEST_P(Sheets, KeepTheirThicknessUnderWidePerspective) {
   const Sheet sheet = GetParam();
   scene::TetMesh mesh = datasets::regular_split(2, 1, 2, {2, sheet.thickness, sheet.length / 2},

@@ -93,7 +93,7 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
 }
 
 TEST(SortFirst, EveryCounterIsThatOfAllRanksTogether) {
-  // Without a pilot pass, whose bricks would be in memory already.
+  // There is no pilot pass, because it would load bricks into memory.
   Settings settings;
   settings.ranks.balance = Balance::even;
   const std::vector<VolumeJob> jobs{orbit(1)[0]};
@@ -124,7 +124,8 @@ double deviation(const std::vector<std::uint64_t>& samples) {
 }
 
 TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEndEarly) {
-  // Each view separately: nothing is known about it, nor about rank 0's time for gathering. The ball is opaque.
+  // Each view is rendered separately: nothing is known about the view or about rank 0's time for gathering. The ball is
+  // opaque.
   std::vector<VolumeJob> jobs;
   scene::Camera camera;
   camera.position = {2.5, 1.8, 3.3};
@@ -147,7 +148,7 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEnd
     });
     return worst;
   };
-  // Edges are on every fourth pixel: two pixels of about a hundred on each side of a rectangle.
+  // Edges are on every fourth pixel, so each side of a rectangle of about a hundred pixels may be off by two pixels.
   EXPECT_LT(worst_of(Balance::learned), 0.16);
   EXPECT_GT(worst_of(Balance::even), 0.3);
 }
@@ -157,7 +158,7 @@ TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
   scene::Camera camera;
   camera.position = {2.5, 1.8, 3.3};
   camera.parallel_scale = 1.6;
-  // The third is far from the second, the last has another size.
+  // The third view is far from the second, and the last image has another size.
   for (const double turn : {0.0, 0.005, 0.4, 0.405}) jobs.push_back({scene::orbit(camera, turn), {161, 107}});
   jobs.push_back({jobs.back().camera, {67, 101}});
   const auto source = ball();
@@ -181,7 +182,7 @@ TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {
   settings.ranks.balance_weights = {3, 1};
   const auto frames = render(2, settings, orbit(2));
   ASSERT_EQ(frames.size(), 3u);
-  // A hundred pixels, edges on every fourth.
+  // The image is about a hundred pixels wide, and edges are on every fourth pixel.
   for (const FinishedVolumeFrame& frame : frames) EXPECT_GT(frame.ranks[0].samples, 2 * frame.ranks[1].samples);
   settings.ranks.balance_weights = {1, 1, 1};
   EXPECT_THROW(static_cast<void>(render(2, settings, orbit(1))), scene::Error);

@@ -178,7 +178,7 @@ Case ball(int ranks) {
   return c;
 }
 
-/// Counts the samples read of its volume outside a part.
+/// Counts the reads of a volume inside and outside a part.
 class PartOfVolume final : public scene::SampleSource {
  public:
   PartOfVolume(const scene::SampleSource& all, const volume::VoxelBox& part)
@@ -207,7 +207,7 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     const PartOfVolume part(*c.source, split.boxes()[static_cast<std::size_t>(transport.rank())]);
     volume::RenderSettings render = c.render;
-    // Only a quarter of the bricks.
+    // The memory holds only a quarter of the bricks.
     render.memory_bytes = 17 * 17 * 17 * 4 * (64 / 4 + 4);
     // Nor are others preloaded.
     if (transport.rank() % 2 == 0) render.grid.cache = CachePolicy::proximity, render.grid.preload_limit = 8;
@@ -230,7 +230,7 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
 
 TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   Case c = ball(5);
-  // Steps, for which float lanes are not certain everywhere.
+  // At steps, float lanes are not certain everywhere.
   c.knots = {{0, {0.2, 0.4, 1}, 0}, {0.5, {0.2, 0.4, 1}, 0}, {0.5, {1, 0.5, 0.2}, 5}, {1, {1, 0.5, 0.2}, 5}};
   constexpr scene::ImageSize size{60, 50};
   std::vector<int> reported(60 * 50, 0);

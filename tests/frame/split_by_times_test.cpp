@@ -23,7 +23,8 @@ const VolumeJob job = [] {
   return VolumeJob{camera, {side, side}};
 }();
 
-/// Two ranks, each with the left or right half, with 50 ms of tile work each, and the given milliseconds of other work.
+/// The times of two ranks. Each rank has the left or right half of the image, with 50 ms of tile work, and the given
+/// milliseconds of other work.
 std::vector<CastTimes> times(double first_other_work, double second_other_work) {
   constexpr double half_ms = 50;
   std::vector<CastTimes> ranks(2);
@@ -36,7 +37,7 @@ std::vector<CastTimes> times(double first_other_work, double second_other_work) 
   return ranks;
 }
 
-/// The weights when one image is all that is known about the ranks' other work.
+/// The weights when the ranks' other work is known from one image only.
 std::vector<double> weights_of(double first_other_work, double second_other_work) {
   SplitByTimes splits;
   splits.learn(job, box, times(first_other_work, second_other_work));
@@ -49,7 +50,7 @@ void expect_same(const std::vector<double>& ours, const std::vector<double>& the
 }
 
 TEST(SplitByTimes, ARankGetsLessForItsOtherWork) {
-  // 100 ms of tiles and 24 of other work are 62 for each: 42 and 58 of tiles.
+  // 100 ms of tile work and 24 ms of other work are 62 ms for each rank. So the ranks get 42 and 58 ms of tile work.
   const std::vector<double> weights = weights_of(20, 4);
   ASSERT_EQ(weights.size(), 2u);
   EXPECT_NEAR(weights[0] / weights[1], 42.0 / 58.0, 1e-9);
@@ -88,7 +89,7 @@ TEST(SplitByTimes, ASplitGivesRanksTheSameTime) {
 }
 
 // The prediction moves with the box as the eye moves past it; the tile times here stay fixed in the image. So each step
-// has the same prediction error: the split of one image does not reveal it, that of many is even.
+// has the same prediction error. The times of one image do not reveal this error; after many images, the split is even.
 TEST(SplitByTimes, ErrorsThatRepeatFromFrameToFrameAreLearned) {
   constexpr scene::ImageSize size{512, 512};
   constexpr int ranks = 4;

@@ -17,7 +17,8 @@
 namespace tessera::frame::surfaces_between_ranks_test {
 namespace {
 
-/// Compares three ranks' images, as segments and as runs, with one process's. The ranks share their parts, or not.
+/// Compares the images of three ranks, exchanged as segments and as runs, with those of one process, with and without
+/// sharing of parts.
 void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings settings, const FrameJob& job,
                                  const scene::TransferFunction& function) {
   const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
@@ -37,8 +38,8 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
     EXPECT_EQ(segments[0].image.depth, expected.depth);
     settings.exchange = Exchange::runs;
     const auto runs = render_parts(parts, settings, job, function);
-    // Runs are rounded to float: 6e-8 of their light each. Ranks that share no memory cut runs at triangles in double
-    // precision.
+    // Runs are rounded to float, with an error of 6e-8 of their light. Ranks that share no memory cut runs at triangles
+    // in double precision.
     const bool cut = settings.render.surfaces.has_faces() && !sharing;
     EXPECT_LT(difference(runs.at(0).image, cut ? expected_in_double : expected), 2e-6);
     EXPECT_FALSE(runs.at(0).overlapping);
@@ -47,7 +48,7 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
 
 TEST(SurfacesBetweenRanks, MatchThoseOfOneProcess) {
   scene::TetMesh mesh = datasets::cube(8, 0.2);
-  // Values of vertices among them: the surfaces coincide with faces shared by ranks.
+  // Some vertices have the values of surfaces, so these surfaces coincide with faces shared by ranks.
   for (std::size_t i = 0; i < mesh.scalars.size(); i += 3) mesh.scalars[i] = std::round(mesh.scalars[i] * 8) / 8;
   const scene::TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0}, {1, {1, 0.4, 0.2}, 2}});
   DistributedSettings settings;
@@ -105,7 +106,7 @@ TEST(SurfacesBetweenRanks, OfFacesMatchThoseOfOneProcess) {
 }
 
 TEST(SurfacesBetweenRanks, OfMoreTrianglesThanAWindowHoldsMatchThoseOfOneProcess) {
-  // Rays meet 100 sheets before, in and behind the cells. Each rank has a share of the sheets.
+  // Rays meet 100 sheets in front of, in and behind the cells. Each rank has a share of the sheets.
   auto sheets = std::make_shared<TriangleMesh>();
   for (std::uint32_t i = 0; i < 100; ++i) {
     const double z = 2 - 0.04 * i;

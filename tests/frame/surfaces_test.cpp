@@ -47,14 +47,14 @@ TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue)
       Renderer renderer(mesh, exact(surfaces, lattice));
       const scene::Image image = renderer.render(camera, size, clear());
       const std::size_t middle = image.index(12, 12);
-      // Along the middle ray n.d = 4 / sqrt(20); depth by similar triangles.
+      // Along the middle ray, n.d = 4 / sqrt(20); the depth follows from similar triangles.
       const double cosine = 4 / std::sqrt(20.0);
       const double matte = 0.2 + 0.8 * cosine, shine = 0.2 * std::pow(cosine, 32);
       EXPECT_NEAR(image.rgba[4 * middle], 0.4 * (0.5 * matte + shine), 1e-6);
       EXPECT_NEAR(image.rgba[4 * middle + 1], 0.4 * (0.25 * matte + shine), 1e-6);
       EXPECT_NEAR(image.rgba[4 * middle + 2], 0.4 * shine, 1e-6);
       EXPECT_NEAR(image.rgba[4 * middle + 3], 0.4, 1e-6);
-      // That pixel's centre is half a pixel (1.5 / 24) up and right of the axis; up is not along z.
+      // The middle pixel's centre is half a pixel (1.5 / 24) to the right of and above the axis; up is not along z.
       const glm::dvec3 forward = glm::normalize(glm::dvec3(-2, 0, -4)), right = glm::cross(forward, {0, 1, 0});
       const glm::dvec3 start = glm::dvec3(2, 0, 4) + (right - glm::cross(right, forward)) * (1.5 / 24);
       EXPECT_NEAR(image.depth[middle], (0.25 - start.z) / forward.z, 1e-6);
@@ -71,7 +71,7 @@ TEST(IsoSurface, IsBetweenTheDataInFrontAndBehind) {
     Renderer renderer(mesh, exact(surfaces, true));
     const auto image = renderer.render(view(ProjectionKind::orthographic, {0, 0, 4 * side}), size, grey_fog());
     const std::size_t middle = 4 * image.index(4, 4);
-    const double fog = 1 - std::exp(-0.7);  // one unit of it in front of the plane, half of it grey
+    const double fog = 1 - std::exp(-0.7);  // opacity of one unit of fog in front of the plane; half of it is grey
     EXPECT_NEAR(image.rgba[middle], 0.5 * fog + (1 - fog), 2e-6);
     EXPECT_NEAR(image.rgba[middle + 1], 0.5 * fog, 2e-6);
     EXPECT_EQ(image.rgba[middle + 3], 1.0f);
@@ -87,8 +87,9 @@ TEST(IsoSurface, AtTheValueOfVerticesFacesAndWholeCellsIsHitOnce) {
   scene::TetMesh level = plateau;
   for (std::size_t i = 0; i < plateau.positions.size(); ++i) {
     const double z = plateau.positions[i].z / 2 + 0.5;
-    level.scalars[i] = z;                                                     // the value on a layer of faces
-    plateau.scalars[i] = z < 0.25 ? z * 2 : z <= 0.75 ? 0.5 : 2 * (z - 0.5);  // and in all cells between two layers
+    level.scalars[i] = z;  // the surface's value is on a layer of faces
+    // The surface's value is in all cells between two layers.
+    plateau.scalars[i] = z < 0.25 ? z * 2 : z <= 0.75 ? 0.5 : 2 * (z - 0.5);
   }
   for (const auto* mesh : {&level, &plateau})
     for (const bool lattice : {true, false})
@@ -115,7 +116,7 @@ Surfaces random_surfaces(Random& random, const scene::TetMesh& mesh) {
   const int n = 1 + random.below(random.chance(0.2) ? 30 : 5);
   for (int i = 0; i < n; ++i) {
     IsoSurface iso;
-    // The value of a vertex, an adjacent double, or any.
+    // The value of a vertex, a double adjacent to it, or any value.
     const double of_vertex =
         mesh.scalars[static_cast<std::size_t>(random.below(static_cast<int>(mesh.scalars.size())))];
     iso.value = of_vertex;
@@ -230,8 +231,8 @@ TEST(IsoSurface, IsAPointAmongDeepSamples) {
     for (const auto& s : deep.pixel(p)) points += s.z == s.z_back ? 1u : 0u;
   }
   EXPECT_GT(points, 100u);
-  // A plane inserted in front of a surface hides it: the samples are those of a frame whose far clipping plane is
-  // there.
+  // A plane inserted in front of a surface hides the surface: the samples are those of a frame whose far clipping plane
+  // is at the same depth.
   const double plane = 5.3;
   scene::Camera clipped = camera;
   clipped.clipping_range = scene::ClippingRange{0.1, plane};

@@ -95,8 +95,8 @@ TransferFunction random_function(Random& random, int knots, double range) {
   return TransferFunction(list);
 }
 
-/// Increasing, decreasing and constant; from and to knots; with an optical depth of about `depth` if extinction is not
-/// zero.
+/// Segments with increasing, decreasing and constant scalars; some begin or end at knots. Their optical depth is about
+/// `depth` if the extinction is not zero.
 std::vector<Segment> random_segments(Random& random, const TransferFunction& f, int count, double depth) {
   const double low = f.knots().front().value, high = f.knots().back().value, range = std::max(1.0, high - low);
   const auto scalar = [&] {
@@ -113,11 +113,11 @@ std::vector<Segment> random_segments(Random& random, const TransferFunction& f, 
   return list;
 }
 
-/// Bounds, in units of the brightest light of a segment (colours are at most 1). Each is some six roundings of a float
-/// (6e-8) and the polynomials' 2e-7.
+/// Bounds, in units of a segment's brightest light (colours are at most 1). Each bound is about six roundings of a
+/// float (6e-8) plus the polynomials' 2e-7.
 constexpr double light_bound = 5e-7, depth_bound = 5e-7;
-/// For a thin segment, in units of its own optical depth: no bias that would be visible in a sum over a thousand of
-/// them.
+/// Bound for a thin segment, in units of its own optical depth. There must be no bias that would be visible in the sum
+/// of a thousand thin segments.
 constexpr double thin_bound = 1e-6;
 
 void expect_close(const std::vector<Segment>& segments, const std::vector<Light>& lights,
@@ -126,7 +126,7 @@ void expect_close(const std::vector<Segment>& segments, const std::vector<Light>
     const Light &a = lights[i], &b = truth[i];
     SCOPED_TRACE(testing::Message() << "length " << segments[i].length << ", scalars " << std::fixed
                                     << segments[i].front << " to " << segments[i].back);
-    // Double's own 1 - exp(-q) is accurate to 1e-16: 1e-7 of an optical depth of 1e-9.
+    // 1 - exp(-q) in double has an error of 1e-16, which is 1e-7 of an optical depth of 1e-9.
     const double brightest = emission == Emission::independent ? segments[i].length : 1;
     const double thin = emission == Emission::independent ? segments[i].length : std::max(1e-9, b.optical_depth);
     const double bound = std::min(light_bound * brightest, thin_bound * thin);
@@ -134,7 +134,7 @@ void expect_close(const std::vector<Segment>& segments, const std::vector<Light>
     EXPECT_NEAR(a.g, b.g, bound);
     EXPECT_NEAR(a.b, b.b, bound);
     EXPECT_NEAR(a.alpha, b.alpha, std::min(light_bound, thin_bound * std::max(1e-9, b.optical_depth)));
-    if (b.optical_depth < 19)  // near 20 either may have stopped
+    if (b.optical_depth < 19)  // near 20, either integrator may have stopped
       EXPECT_NEAR(a.optical_depth, b.optical_depth, depth_bound * b.optical_depth);
     else
       EXPECT_GE(a.optical_depth, 18.9);
@@ -159,8 +159,8 @@ TEST(LaneIntegrator, AgreesWithDoublePrecisionOnEveryInstructionSet) {
   });
 }
 
-// Spaced logarithmically: almost all knots are in one cell of the table's grid, so that searches begin with large
-// steps, from other cells too.
+// The knots are spaced logarithmically: almost all are in one cell of the table's grid, so that searches begin with
+// large steps, from other cells too.
 TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
@@ -180,7 +180,7 @@ TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
         for (std::size_t i = 0; i < list.size(); ++i) {
           const auto here = static_cast<float>(list[i].value);
           for (const float step : {-1.0F, 1.0F}) segments.push_back({1, here, here + step});
-          // Over at most 100 knots: rounding grows with the number of pieces.
+          // The segment crosses at most 100 knots, because rounding errors grow with the number of pieces.
           const auto there = static_cast<float>(list[std::min(i + 100, list.size() - 1)].value);
           segments.push_back({1, here, there});
           segments.push_back({1, there, here});
@@ -216,8 +216,8 @@ TEST(LaneIntegrator, AThousandThinSegmentsSumWithoutBias) {
       for (int trial = 0; trial < 50; ++trial) {
         const Segment s{static_cast<float>(depth), whole((1 << 21) * random()), whole((1 << 21) * random())};
         const Light light = in_lanes(f, {s})[0];
-        // The segment in long double, thin enough for its light to be kappa c l (1 - q / 2 + ...), which is exact up to
-        // 1e-9; thicker ones use the double integrator.
+        // The true light of the segment. If the segment is thin, its light is kappa c l (1 - q / 2 + ...), and the
+        // first term is exact up to 1e-9. For thicker segments, the double integrator is used.
         double r = 0, g = 0, tau = 0;
         if (depth <= 1e-9) {
           const double step = 1 << 20, lo = std::min(s.front, s.back), hi = std::max(s.front, s.back);
@@ -242,7 +242,7 @@ TEST(LaneIntegrator, AThousandThinSegmentsSumWithoutBias) {
           const Light truth = in_double(f, {s})[0];
           r = truth.r, g = truth.g, tau = truth.optical_depth;
         }
-        // A sum in double of 1000 equal segments has the relative error of one.
+        // The sum in double of 1000 equal segments has the relative error of one segment.
         EXPECT_NEAR(light.g, g, 1e-6 * g) << depth;
         EXPECT_NEAR(light.r, r, 1e-6 * tau) << depth;
         EXPECT_NEAR(light.optical_depth, tau, depth_bound * tau) << depth;
@@ -253,7 +253,8 @@ TEST(LaneIntegrator, AThousandThinSegmentsSumWithoutBias) {
 }
 
 TEST(LaneIntegrator, OpticalDepthIsRelativelyRightCloseToAClearKnot) {
-  // From a clear knot at 2^29 on: kappa is the distance from it, whether the segment moves away from it or towards it.
+  // On both sides of a clear knot at 2^29, kappa is proportional to the distance from the knot. The segment may move
+  // away from the knot or towards it.
   const double knot = 1 << 29;
   const TransferFunction f({{0, {1, 1, 1}, 1}, {knot, {1, 1, 1}, 0}, {2 * knot, {1, 1, 1}, 1}});
   for (const float distance : {64.0f, 1024.0f, 1048576.0f})
@@ -278,7 +279,7 @@ TEST(LaneIntegrator, CuttingASegmentChangesNothing) {
         const auto l = in_lanes(f, {s,
                                     {static_cast<float>(s.length * u), s.front, middle},
                                     {static_cast<float>(s.length * (1 - u)), middle, s.back}});
-        // The bounds of three results. At a step the constant segment of length zero may be on either side.
+        // The bound is that of three results. At a step, the constant segment of length zero may be on either side.
         const double bound = 3 * std::min(light_bound, thin_bound * l[0].optical_depth);
         EXPECT_NEAR(l[0].r, l[1].r + (1 - l[1].alpha) * l[2].r, bound);
         EXPECT_NEAR(l[0].g, l[1].g + (1 - l[1].alpha) * l[2].g, bound);
@@ -401,7 +402,8 @@ TEST(LaneIntegrator, TinyAndHugeScenesAreTheSameScene) {
 }
 
 TEST(LaneIntegrator, KnotsOutOfReachOfTheScalarsKeepTheirSlope) {
-  // Data in [-1, 1], knots at +-1000: the used part is a ramp from 0.999 to 1.001 of the middle.
+  // The data are in [-1, 1], and the knots are at -1000 and 1000. The part of the function that is used is a ramp from
+  // 0.999 to 1.001 of the middle value.
   const TransferFunction f({{-1000, {0, 0.5, 0}, 0}, {1000, {1, 0.5, 0}, 2}});
   const LaneTable table(f, 0, 0x1p-30, 1, Emission::absorption);
   const Light light = in_lanes(table, {{0.5f, -0x1p30f, 0x1p30f}})[0];

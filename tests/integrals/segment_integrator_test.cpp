@@ -76,7 +76,7 @@ TEST(SegmentIntegrator, HomogeneousMatterFollowsBeerAndLambert) {
   for (const double length : {0.0, 1e-12, 0.1, 2.0, 1e3}) {
     const Light light = integrated(f, {{length, 0.3, 0.7}}, Emission::absorption)[0];
     const double a = -std::expm1(-3 * length);
-    EXPECT_NEAR(light.r, 0.2 * a, 1e-9);  // the thickest stop at a transmittance of 1e-10
+    EXPECT_NEAR(light.r, 0.2 * a, 1e-9);  // thick segments end at a transmittance of 1e-10
     EXPECT_NEAR(light.b, a, 1e-9);
     EXPECT_NEAR(light.transmittance, 1 - a, 1e-9);
     const Light independent = integrated(f, {{length, 0.3, 0.7}}, Emission::independent)[0];
@@ -111,12 +111,12 @@ TEST(SegmentIntegrator, AgreesWithBruteForceOnEveryInstructionSet) {
           const auto lights = integrated(f, segments, emission);
           for (std::size_t i = 0; i < segments.size(); ++i) {
             const Light expected = brute_force(f, segments[i], emission, 20000);
-            // Midpoint steps have an error of h^2 / 24 of the second derivative (30 * 300 knots' kinks): 3e-6 covers
-            // it.
+            // The midpoint rule has an error of h^2 / 24 times the second derivative, which is 30 * 300 at kinks
+            // (knots): 3e-6 covers it.
             EXPECT_NEAR(lights[i].r, expected.r, 3e-6);
             EXPECT_NEAR(lights[i].g, expected.g, 3e-6);
             EXPECT_NEAR(lights[i].b, expected.b, 3e-6);
-            // Behind a transmittance of 1e-10 the exact form stops.
+            // The exact integrator stops at a transmittance of 1e-10.
             EXPECT_NEAR(std::exp(-lights[i].optical_depth), expected.transmittance, 3e-6);
           }
         }
@@ -141,7 +141,8 @@ TEST(SegmentIntegrator, AutoMakesLongerPiecesWithinItsShareOfTheAccuracy) {
         const auto [light, through] = seen({IntegratorKind::exact, 0, 0});
         for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5}) {
           const auto fast = seen({.kind = IntegratorKind::automatic, .accuracy = accuracy});
-          // A 64th each for longer pieces and for early termination; `exact` itself has an error of 2e-8.
+          // Longer pieces and early termination each add an error of accuracy / 64; `exact` itself has an error of
+          // 2e-8.
           EXPECT_NEAR(fast.first, light, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
           EXPECT_NEAR(fast.second, through, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
         }
@@ -229,7 +230,8 @@ TEST(SegmentIntegrator, TablesAreExactWhereTheColourIsConstantAndExtinctionLinea
        {Integrator{.kind = IntegratorKind::preintegrated, .table_size = 16}, Integrator{IntegratorKind::partial}}) {
     const auto light = integrated(f, segments, Emission::absorption, integrator);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-      // The table's floats: 6e-8 of the extinction, times the remaining light at that depth (at most 1 / e).
+      // The table stores the extinction as a float, with a relative error of 6e-8. The error of the light is this times
+      // q exp(-q) for an optical depth q, and q exp(-q) is at most 1 / e.
       EXPECT_NEAR(light[i].r, exact[i].r, 1e-7);
       EXPECT_NEAR(light[i].b, exact[i].b, 1e-7);
       EXPECT_NEAR(light[i].transmittance, exact[i].transmittance, 1e-7);
@@ -237,7 +239,7 @@ TEST(SegmentIntegrator, TablesAreExactWhereTheColourIsConstantAndExtinctionLinea
   }
 }
 
-/// The largest error over random segments against the exact integral.
+/// The largest difference between the light of random segments and the exact integral.
 double table_error(const TransferFunction& f, const std::vector<Segment>& segments, Emission emission,
                    const Integrator& integrator) {
   const auto exact = integrated(f, segments, emission), light = integrated(f, segments, emission, integrator);
@@ -253,7 +255,8 @@ TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
   std::uniform_real_distribution<double> scalar(0, 1), length(0, 2);
   std::vector<Segment> segments;
   for (int i = 0; i < 2000; ++i) segments.push_back({length(random), scalar(random), scalar(random)});
-  // Without kinks inside, proportional to the square of the size; with them, at least linear.
+  // Without kinks in the function, the error is of second order in the distance between entries; with kinks, at least
+  // of first order.
   const TransferFunction smooth({{0, {0, 0.3, 1}, 1}, {1, {1, 0.6, 0}, 5}});
   const TransferFunction kinked = random_function(random, 7, 5, false);
   for (const Emission emission : {Emission::absorption, Emission::independent}) {
@@ -261,8 +264,8 @@ TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
       return table_error(f, segments, emission, {.kind = IntegratorKind::preintegrated, .table_size = size});
     };
     const double coarse = error(smooth, 16), fine = error(smooth, 64);
-    EXPECT_GT(coarse / fine, 10);  // 16, except for the position of the largest error between entries
-    EXPECT_LT(fine, emission == Emission::absorption ? 1e-3 : 2e-3);  // light of up to 1, or of the length
+    EXPECT_GT(coarse / fine, 10);  // second order gives 16; the position of the largest error between entries varies
+    EXPECT_LT(fine, emission == Emission::absorption ? 1e-3 : 2e-3);  // light is at most 1, or at most the length
     const double coarse_kinked = error(kinked, 16), fine_kinked = error(kinked, 64);
     EXPECT_GT(coarse_kinked / fine_kinked, 2.5);
     EXPECT_LT(fine_kinked, 2e-2);
@@ -276,9 +279,10 @@ TEST(SegmentIntegrator, PreintegratedCutsOffValuesOutsideTheKnots) {
                                       {1, 0, 1},   {1, -1, 0},    {1, 1, 9},      {3, 0.5, 0.5},  {3, 0.2, 0.5},
                                       {1, 0.5, 2}, {1, 0.8, 0.5}, {1, 0.5, -0.5}, {0, 0.3, 0.31}, {1, 2, 7}};
   const Integrator fine{.kind = IntegratorKind::preintegrated, .table_size = 128};
-  // Between the knots the error is the table's, from the colour's change along w (size / 4 steps, second order).
+  // Between the knots, the error is that of the table. It comes from the change of colour along w, in size / 4 steps
+  // (second order).
   EXPECT_LT(table_error(f, segments, Emission::absorption, fine), 4e-4);
-  // A single step leaves nothing to the table.
+  // A function that is a single step needs no interpolation in the table.
   EXPECT_LT(table_error(step, segments, Emission::absorption, fine), 1e-9);
   EXPECT_LT(table_error(one, segments, Emission::independent, fine), 1e-9);
 }
@@ -290,13 +294,14 @@ TEST(SegmentIntegrator, PartialErrsByItsTableOnly) {
     const TransferFunction f = random_function(random, 9, 5, true);
     std::vector<Segment> segments;
     for (int i = 0; i < 500; ++i) segments.push_back({std::pow(10, power(random)), scalar(random), scalar(random)});
-    // Ten pieces at most, each with an error of 1e-6 of a change of colour of at most 1, attenuated.
+    // A segment has at most ten pieces. Each has an error of 1e-6 of a change of colour that is at most 1, attenuated
+    // by the matter in front.
     EXPECT_LT(table_error(f, segments, Emission::absorption, {IntegratorKind::partial}), 1e-5);
   }
 }
 
 TEST(PsiTable, KeepsItsDocumentedError) {
-  // Light of a white segment whose extinction is its scalar, compared with a blue one's: red comes only from 1 - M.
+  // The extinction equals the scalar, and the colour changes from red to blue: the red light comes only from 1 - M.
   std::mt19937 random(53);
   for (const auto& [deepest, bound] : {std::pair{10.0, 1e-5}, {1e3, 2e-2}, {1e6, 2e-2}}) {
     const TransferFunction f({{0, {1, 0, 0}, 0}, {deepest, {0, 0, 1}, deepest}});

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<double> values(static_cast<std::size_t>(all.count()));
     volume.source->read(all, std::span<double>(values));
     in_memory = values;
-    // If floats represent the samples, magnitudes are floats too.
+    // If floats represent the samples, the magnitudes of vectors are stored as floats too.
     if (scene::fits_float(volume.source->grid().type))
       for (double& v : values) v = static_cast<double>(static_cast<float>(v));
     // A brick file may state a range that is wider than the actual one.
@@ -35,7 +35,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         test::require(volume.format.find("rick") != std::string::npos ||
                       (value >= volume.range.low && value <= volume.range.high));
   });
-  // The same samples by way of a scratch file, which also accepts plain .vti and .vtr files; or refused again.
+  // Reads the same samples through a scratch file, which also supports plain .vti and .vtr files. The file may be
+  // refused again.
   test::parse_or_refuse([&] {
     ReadOptions options;
     options.memory_bytes = 1;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Scalars at which the answer may change: knots, adjacent numbers, and some between and beyond.
+/// Scalars at which the result may change: knots, numbers adjacent to knots, and some between and beyond the knots.
 std::vector<double> telling_scalars(const scene::TransferFunction& function, std::mt19937& random) {
   std::vector<double> scalars{-1e300, 1e300, 0, std::numeric_limits<double>::denorm_min()};
   for (const scene::Knot& k : function.knots())
@@ -73,7 +73,7 @@ TEST(ClearIntervals, HideWhatTheTransferFunctionHides) {
 
 TEST(ClearIntervals, EndsAreThoseOfRoundedInterpolation) {
   std::mt19937 random(5);
-  // Just below 0 the fraction between the knots rounds to one, and so the function to zero.
+  // Just below 0, the fraction between the knots rounds to one, and therefore the function to zero.
   expect_same_as_visible(scene::TransferFunction({{-1, {1, 1, 1}, 1}, {0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 1}}), random);
   expect_same_as_visible(scene::TransferFunction({{-1e300, {0, 0, 0}, 0}, {1e300, {1, 1, 1}, 1}}), random);
 }

@@ -20,7 +20,7 @@ bool before(const TileEntry& a, const TileEntry& b) {
   return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
 }
 
-/// Expects the same entries, none nearer than one before it by more than the slack.
+/// Expects the same entries, and no entry that is nearer than an earlier one by more than the slack. Returns the slack.
 double expect_ordered(std::vector<TileEntry> entries, DepthOrderScratch& scratch, const std::string& what) {
   std::vector<TileEntry> expected = entries;
   const DepthOrder order = order_by_depth(entries, scratch);
@@ -94,7 +94,8 @@ TEST(DepthOrder, SlackIsShort) {
         for (std::size_t i = 0; i < n; ++i) entries.push_back({of[what](i), static_cast<std::uint32_t>(i)});
         return expect_ordered(entries, scratch, std::string(name) + ", " + what);
       };
-      // At least a step for every second entry, up to 4096 of them; the rest is the slack's margin for rounding.
+      // There is at least one step for every two entries, up to 4096 steps. The rest of the bound is the slack's margin
+      // for rounding.
       EXPECT_LE(slack("even"), 1.02 / std::min(static_cast<double>(n) / 2 - 1, 4095.0)) << name;
       // Large numbers of entries are certainly reordered.
       if (n < 5003) continue;

@@ -38,7 +38,7 @@ TEST(EdgeSign, AgreesWithIntegersOnAndNearTheEdgeAllAroundTheEye) {
     const std::int64_t signs[] = {2, -2, 0};
     const auto vertex = [&](std::int64_t x, std::int64_t y) {
       const std::int64_t w = signs[random() % 3], side = w < 0 ? -1 : 1;
-      // In the plane of the eye: the direction from the pixel to the point.
+      // A point in the plane of the eye is given by the direction from the pixel to the point.
       return w == 0 ? WholeVertex{x - px, y - py, 0} : WholeVertex{side * x, side * y, w};
     };
     // In half of the trials the pixel is on the edge by construction.

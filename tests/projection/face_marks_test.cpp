@@ -41,7 +41,7 @@ Met met(std::vector<FaceMark> given) {
 
 TEST(FaceMarks, AtOneDepthAreInTheOrderOfAShiftedRay) {
   std::vector<FaceMark> marks{mark(1, 0.5, 0), mark(2, -1, 3), mark(3, -1, -2), mark(4, 0.5 + 1e-13, 0), mark(5, 0, 9)};
-  // By slope in x, then in y; in one plane by number.
+  // Marks are ordered by slope in x, then by slope in y; marks in one plane are ordered by number.
   const std::vector<std::uint32_t> expected{3, 2, 5, 1, 4};
   std::ranges::sort(marks, {}, &FaceMark::number);
   do {
@@ -87,7 +87,7 @@ TEST(FaceMarks, CellsEndBeforeThoseThatTheyMeetAndBeginBehindThem) {
   EXPECT_EQ(segments.back[2], 2);
   EXPECT_EQ(segments.front[6], segments.front[1]);
   EXPECT_EQ(segments.back[6], 3);
-  // Sorted by slope the numbers are 20, 30, 10.
+  // In the order of slopes, the numbers are 20, 30, 10.
   EXPECT_LT(segments.front[3], places[0]);
   EXPECT_LT(segments.front[4], places[0]);
   EXPECT_GT(segments.front[5], places[2]);

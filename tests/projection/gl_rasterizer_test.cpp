@@ -93,7 +93,7 @@ std::vector<T> read_back(const gl::Context& context, const gl::Buffer& buffer, s
   return values;
 }
 
-/// Counted, then filled into lists of exactly that length.
+/// Counts the segments first, then fills lists of exactly these lengths.
 std::vector<Segment> by_device(const gl::Context& context, const Scene& scene, std::size_t most_cells) {
   using gl::Buffer;
   GlRasterizer rasterizer(context, most_cells);
@@ -134,7 +134,7 @@ std::vector<Segment> by_device(const gl::Context& context, const Scene& scene, s
   return ordered(std::move(segments));
 }
 
-/// The same cells on every ray, and the same numbers within the rounding of a device's formats.
+/// Expects the cells and numbers of rasterize_planes on every ray, within the rounding of a device's formats.
 void expect_like_planes(const gl::Context& context, const Scene& scene) {
   const auto expected = by_planes(scene), found = by_device(context, scene, 1 << 17);
   ASSERT_EQ(found.size(), expected.size());
@@ -152,7 +152,7 @@ void expect_like_planes(const gl::Context& context, const Scene& scene) {
   }
 }
 
-/// The source of OpenGL, in software on machines without a GPU.
+/// The tests run on each OpenGL platform, in software on machines without a GPU.
 class GlRasterizerOn : public testing::TestWithParam<gl::Platform> {
  protected:
   void SetUp() override {
@@ -192,8 +192,8 @@ TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
   const int n = 8;
   const Scene scene(datasets::cube(n, 0), aligned(n, 24), {24, 24});
   expect_like_planes(*context_, scene);
-  // Shifted right and down, 2n columns and rows of pixels hit the box: each of their rays has depth complexity 2, all
-  // others 0.
+  // The tie rule shifts rays right and down, so that 2n columns and 2n rows of pixels hit the box. Each of these rays
+  // has the length 2 in the box, all others 0.
   std::vector<double> length(24 * 24, 0);
   for (const Segment& s : by_device(*context_, scene, 1 << 17)) length[s.pixel] += s.back - s.front;
   std::size_t hit = 0;
@@ -206,8 +206,8 @@ TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
 }
 
 TEST_P(GlRasterizerOn, KeepsTheTieRuleInPerspective) {
-  // The eye on the axis: faces of the split are in planes through the eye that contain rows and columns of pixel
-  // centres.
+  // The eye is on the axis, so that faces of the split are in planes through the eye that contain rows and columns of
+  // pixel centres.
   scene::Camera camera;
   camera.position = {0, 0, 4};
   camera.projection = scene::ProjectionKind::perspective;
@@ -225,7 +225,7 @@ TEST_P(GlRasterizerOn, CellsWithoutVolumeMatchThoseOfPlanes) {
     const auto any = [&] { return static_cast<std::uint32_t>(random() % vertices); };
     for (int i = 0; i < 60; ++i) {
       const std::uint32_t a = any(), b = any(), c = any();
-      if (flat) {  // a point between a, b and c: rounding decides which face is in front, without any effect
+      if (flat) {  // a point in the triangle a, b, c: rounding decides which face is in front, without any effect
         mesh.positions.push_back(0.25 * mesh.positions[a] + 0.25 * mesh.positions[b] + 0.5 * mesh.positions[c]);
         mesh.scalars.push_back(0.25 * mesh.scalars[a] + 0.25 * mesh.scalars[b] + 0.5 * mesh.scalars[c]);
         mesh.tets.push_back({a, b, c, static_cast<std::uint32_t>(mesh.positions.size() - 1)});
@@ -260,7 +260,8 @@ TEST_P(GlRasterizerOn, CellsAFewAtATimeGiveTheSameBits) {
   }
 }
 
-/// exact_edge() alone, which only rays near edges reach: every pixel of cells whose edges pass within 2^-31 of centres.
+/// Tests exact_edge(), which only rays near edges reach, at all pixels of cells whose edges pass within 2^-31 of pixel
+/// centres.
 TEST_P(GlRasterizerOn, EdgesWithinTheLastPlacesOfPixelCentresAreDecidedExactly) {
   std::mt19937 random(11);
   scene::TetMesh mesh;

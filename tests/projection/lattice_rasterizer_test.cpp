@@ -126,9 +126,10 @@ void expect_like_planes(const scene::TetMesh& mesh, const scene::Camera& camera,
     for (std::size_t i = 0; i < out.size; ++i)
       expected[out.pixel(i)][t] = {out.front[i], out.back[i], out.scalar_front[i], out.scalar_back[i]};
   }
-  // Gradients rounded to a step, over 16 pixels a direction, and scalars to floats of 2^30 steps: 20 and 32 steps.
-  // Perspective adds a float quotient times a face's range: an estimate of 1.5 * 2^-12 (SSE's) squared by a Newton step
-  // and three roundings, 3.2e-7 in total, of less than half the lattice.
+  // Gradients are rounded to a step, over 16 pixels per direction (20 steps), and scalars to floats of up to 2^30 steps
+  // (32 steps). Perspective multiplies a float quotient by a face's range, which is less than half of the lattice. The
+  // quotient has an error of 3.2e-7: three roundings, and an estimate's error of 1.5 * 2^-12 (SSE), squared by a Newton
+  // step.
   const double quotient = scene.space.perspective() ? 3.2e-7 * scene::Lattice::limit : 0;
   const double depth_error = (20 + quotient) * scene.lattice.depth_unit;
   const double scalar_error = (20 + 32 + quotient) * scene.lattice.scalar_unit;
@@ -197,7 +198,7 @@ TEST(LatticeRasterizer, CutsSegmentsAtTheTrianglesThatTheirRaysMeet) {
         for (const Segment& s : cut[p]) {
           length += s.back - s.front;
           EXPECT_TRUE(std::none_of(first, last, [&](std::int32_t at) { return s.front < at && at < s.back; })) << p;
-          // It is a part of a cell's segment, with this segment's scalars, up to the error of a face's depth.
+          // Each piece is a part of a cell's segment and has the segment's scalars, up to the error of a face's depth.
           const double reach = LatticeFaces::reach + 4;
           EXPECT_TRUE(std::ranges::any_of(whole[p], [&](const Segment& of) {
             const double steps = std::max(1, of.back - of.front), slope = (of.scalar_back - of.scalar_front) / steps;

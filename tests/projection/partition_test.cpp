@@ -43,7 +43,7 @@ TEST(Partition, RandomIsBalancedSeededAndIndependentOfNeighbours) {
     same_as_next_tet += p == part_at_random(t + 1, 5, parts);
     same_as_next_seed += p == part_at_random(t, 6, parts);
   }
-  // Binomial, standard deviation 93: the tolerance is five of them.
+  // The numbers are binomially distributed with a standard deviation of 93. The tolerance is five standard deviations.
   for (const int s : size) EXPECT_NEAR(s, n / parts, 465);
   EXPECT_NEAR(same_as_next_tet, n / parts, 465);
   EXPECT_NEAR(same_as_next_seed, n / parts, 465);
@@ -115,7 +115,7 @@ TEST(Curve, PartsAreBalancedForAnyDistributionOfTets) {
     for (const int parts : {1, 2, 3, 8, 61}) expect_balanced(keys, parts, 15);
   }
   const scene::TetMesh large = datasets::cube(30);
-  expect_balanced(curve_keys(large, {}, scene::bounds(large)), 4, 2);  // as many rounds as usual
+  expect_balanced(curve_keys(large, {}, scene::bounds(large)), 4, 2);  // two rounds, as usual
 }
 
 TEST(Curve, TetsAtOnePlaceAreCutByTheirIndex) {
@@ -147,7 +147,7 @@ TEST(Curve, PartsOfACubeAreCompact) {
     const scene::Box box = scene::bounds(p);
     volume += (box.high.x - box.low.x) * (box.high.y - box.low.y) * (box.high.z - box.low.z);
   }
-  EXPECT_LT(volume, 1.5 * 8);  // one more layer of cells where the cut is off by 0.4 %
+  EXPECT_LT(volume, 1.5 * 8);  // a part's box has one more layer of cells where the cut is off by 0.4 %
 }
 
 TEST(Partition, OfAWholeMeshIsTheRulesOwn) {

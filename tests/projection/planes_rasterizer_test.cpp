@@ -78,7 +78,8 @@ void expect_like_reference(const scene::TetMesh& mesh, const scene::Camera& came
       for (const Segment& s : ray) {
         const auto found = expected.find(s.tet);
         ASSERT_NE(found, expected.end()) << "pixel " << x << "," << y << " tet " << s.tet;
-        // Both round the projection (1e-16 of depths of order 5) and magnify it by the slope of almost edge-on faces.
+        // The projection has a rounding error (1e-16 of depths of order 5) in both. The slope of almost edge-on faces
+        // magnifies it.
         EXPECT_NEAR(s.front, found->second.front, 1e-9);
         EXPECT_NEAR(s.back, found->second.back, 1e-9);
         EXPECT_NEAR(s.scalar_front, found->second.scalar_front, 1e-9);
@@ -116,8 +117,8 @@ TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesAreOnPixelCentres) {
     RasterCounts counts;
     const Rays rays = rasterized(mesh, aligned(n, size.height), size, 32, &counts);
     EXPECT_GT(counts.exact_sign_tests, 0u);
-    // Shifted right and down, 2n columns and rows of pixels hit the box: each of their rays has depth complexity 2, all
-    // others 0.
+    // The tie rule shifts rays right and down, so that 2n columns and 2n rows of pixels hit the box. Each of these rays
+    // has the length 2 in the box, all others 0.
     std::size_t hit = 0;
     for (const auto& ray : rays) {
       if (ray.empty()) continue;

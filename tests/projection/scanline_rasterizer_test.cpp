@@ -137,7 +137,7 @@ TEST(ScanlineRasterizer, ACornerOfACubeMatchesTheHandCalculation) {
         ++inside;
         ASSERT_EQ(ray.size(), 1u);
         const Segment& s = ray.begin()->second;
-        // Float pixels of up to 64 and depths of up to 5: a few roundings of 2^-24 of them.
+        // Floats of pixel coordinates up to 64 and depths up to 5 have a few rounding errors of 2^-24 of their values.
         EXPECT_NEAR(s.front, 5 - z, 2e-6);
         EXPECT_NEAR(s.back, 5, 2e-6);
         EXPECT_NEAR(s.scalar_front, x / 3 + y * 2 / 3 + z, 2e-6);
@@ -165,7 +165,7 @@ TEST(ScanlineRasterizer, IsPlanesToFloatRoundingWhereNoRayComesNearAnEdge) {
       for (const auto& [tet, s] : rays[p]) {
         const auto found = exact[p].find(tet);
         ASSERT_NE(found, exact[p].end());
-        // Errors of 1e-6 in pixels and 5e-7 in depths, magnified by the steepest face here.
+        // Pixel coordinates have errors of 1e-6 and depths of 5e-7, magnified by the steepest face of this mesh.
         EXPECT_NEAR(s.front, found->second.front, 2e-5);
         EXPECT_NEAR(s.back, found->second.back, 2e-5);
         EXPECT_NEAR(s.scalar_front, found->second.scalar_front, 2e-5);
@@ -205,7 +205,7 @@ TEST(ScanlineRasterizer, CellDataIsTheCellsValueAtBothEnds) {
 }
 
 TEST(ScanlineRasterizer, TheClippingRangeCutsSegments) {
-  // The scalar is the depth, so a cut is correct if it stays so.
+  // The scalar is the depth, so a cut is correct if the scalar still equals the depth.
   scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = 5 - mesh.positions[v].z;
   scene::Camera camera = down_z(5, 0.8, {0.01, 0.02});
@@ -258,7 +258,8 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
     Frame frame(mesh);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
       frame.vertices.push_back({pixel(), pixel(), 1, random() % 3 == 0 ? 5.0 : uniform(1, 9)});
-    for (std::size_t t = 0; t < mesh.tets.size(); t += 5) {  // flat in the image, and of one or two points
+    // Cells that are flat in the image, or have only one or two points.
+    for (std::size_t t = 0; t < mesh.tets.size(); t += 5) {
       PixelVertex* c = &frame.vertices[mesh.tets[t][0]];
       if (t % 2 == 0) c[3].x = c[2].x, c[3].y = c[2].y;
       c[1].y = c[0].y = c[2].y;
@@ -274,7 +275,7 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
         for (const double value : {s.front, s.back, s.scalar_front, s.scalar_back})
           ASSERT_TRUE(std::isfinite(value)) << "round " << round << " tet " << tet;
         ASSERT_LE(s.front, s.back);
-        ASSERT_GE(s.back, cut ? 3 : 1);  // not in front of the nearest vertex, nor the near plane
+        ASSERT_GE(s.back, cut ? 3 : 1);  // not in front of the nearest vertex or the near plane
       }
     EXPECT_GT(segments, 1000u);
     EXPECT_EQ(rasterized(frame, size, 7), whole);
@@ -302,7 +303,7 @@ TEST(ScanlineRasterizer, ReportsScenesThatFloatsDoNotHold) {
 }
 
 TEST(SegmentTuple, GivesBackTheFloatsThatTheRasterizerMade) {
-  // From far away, where lengths are a few units of the depth's last place, and from near.
+  // The mesh is seen from far away, where lengths are a few units of the depth's last place, and from near.
   for (const double distance : {3.0, 5.0, 100.0, 1e4, 1e6})
     for (const double scale : {1.0, 3e-12, 7e15}) {
       scene::Camera camera = down_z(distance, 1.2, {0.013, 0.027});

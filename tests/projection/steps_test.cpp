@@ -88,7 +88,7 @@ TEST(SplitRasterizer, KeepsValuesJustBelowAStepBelowIt) {
         splitter.rasterize(projected.view(), steps, {0, tet}, {0, 0, size.width, size.height}, counts);
     for (std::size_t i = 0; i < pieces.size; ++i) {
       const double least = std::min(pieces.scalar_front[i], pieces.scalar_back[i]);
-      // In a mixed cell everything is below, except the corners, edges and faces at the step.
+      // In a cell with both values, everything is below the step except corners, edges and faces at the step.
       EXPECT_EQ(least < 1, low < 1) << low << ' ' << high;
       const scene::Lattice lattice{0, 0x1p-30, 0.5, 0x1p-30};
       const LatticeScalars on_lattice = lattice_scalars(pieces.scalar_front[i], pieces.scalar_back[i], steps, lattice);
@@ -113,7 +113,7 @@ TEST(CellsAtSteps, AreThoseNearAStepWhoseScalarsDifferLittle) {
   std::fill(mesh.scalars.begin(), mesh.scalars.end(), 0.5);
   EXPECT_EQ(count(), 0u);  // all at the step
   std::fill(mesh.scalars.begin(), mesh.scalars.end(), below(0.5));
-  EXPECT_EQ(count(), mesh.tets.size());  // all below by a last place: the lattice maps it to the step
+  EXPECT_EQ(count(), mesh.tets.size());  // the scalars are one last place below the step; the lattice maps them to it
   for (std::size_t v = 0; v < mesh.scalars.size(); v += 2) mesh.scalars[v] = 0.5 + 1e-9;
   EXPECT_GT(count(), mesh.tets.size() / 2);
 }

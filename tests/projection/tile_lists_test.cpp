@@ -224,7 +224,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
         for (const auto v : mesh.tets[entry.tet]) nearest = std::min(nearest, vertices[v].depth);
         nearest = std::max(nearest, projected.near_depth);
         EXPECT_LE(lists.depth_origin() + entry.near_depth, nearest) << where;
-        // Rounding of floats, and the margin for it.
+        // The tolerance is the rounding of floats and the margin for it.
         EXPECT_GE(lists.depth_origin() + entry.near_depth, nearest - 4e-7 * (nearest - lists.depth_origin()) - 1e-14);
       }
     }
@@ -317,7 +317,7 @@ TEST(TileLists, ReadEachCellTwiceHoweverManyTasks) {
       const std::uint64_t counters = all.lists->reads().counters;
       all.lists->fill(0, all.grid.count());
       EXPECT_EQ(all.lists->reads().cells, mesh.tets.size() + all.lists->counts().projected) << threads << " threads";
-      // Eight runs per thread, each with its counters.
+      // There are eight runs per thread, each with separate counters.
       EXPECT_EQ(all.lists->reads().serial_counters, counters);
       EXPECT_EQ(counters, 8 * static_cast<std::uint64_t>(threads) * all.grid.count()) << threads << " threads";
     });

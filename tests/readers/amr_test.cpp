@@ -20,7 +20,7 @@ namespace {
 
 using namespace testing;
 
-/// The interval of a line inside a tet; empty if it misses it.
+/// The interval of a line inside a tet; empty if the line misses the tet.
 std::optional<std::pair<double, double>> stretch_in(const scene::TetMesh& mesh, const scene::Tet& tet,
                                                     const glm::dvec3& from, const glm::dvec3& along) {
   double low = -1e9, high = 1e9;
@@ -72,7 +72,7 @@ TEST(Amr, LinesThroughCellDataSumUpWhatTheirFinestCellsHold) {
         length += stretch->second - stretch->first;
         sum += (stretch->second - stretch->first) * read.mesh.scalars[t];
       }
-    // Between all planes of the finest lattice that the line crosses, computed from the file alone.
+    // The planes of the finest lattice cut the line into intervals. Their values are computed from the file alone.
     std::vector<double> cuts;
     double first = -1e9, last = 1e9;
     for (int a = 0; a < 3; ++a) {
@@ -142,7 +142,7 @@ TEST(Amr, MaximumEntropyWeightsArePositiveWithTheRequestedMean) {
     std::array<glm::dvec3, 8> offsets{};
     std::array<double, 8> weights{};
     weights.fill(1);
-    for (int k = 0; k < 8; ++k) {  // one in each octant: 0 is inside their hull
+    for (int k = 0; k < 8; ++k) {  // one offset per octant, so that 0 is inside their hull
       const double size = length(random);
       offsets[static_cast<std::size_t>(k)] = size * glm::dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
     }

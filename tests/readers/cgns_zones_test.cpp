@@ -237,8 +237,8 @@ TEST(CgnsZones, CellsAreInTheOrderOfTheirNumbersWhereverFacesAre) {
   const test::TemporaryFolder folder;
   const Row row(5);
   struct Layout {
-    cgsize_t left, right, faces;  ///< first numbers of cubes 0 and 1, of 2 to 4, and of two faces
-    std::array<int, 3> order;     ///< of these in the file
+    cgsize_t left, right, faces;  ///< first element numbers: of cubes 0 and 1, of 2 to 4, of two faces
+    std::array<int, 3> order;     ///< order of these three in the file
   };
   for (const Layout& layout :
        {Layout{1, 3, 6, {0, 1, 2}}, Layout{3, 5, 1, {0, 1, 2}}, Layout{3, 5, 1, {2, 0, 1}}, Layout{1, 5, 3, {0, 2, 1}},
@@ -331,7 +331,7 @@ struct Faces {
   }
 
   Numbers nodes, offsets{0};
-  std::vector<std::array<int, 2>> sides;  ///< cubes from 1, 0 means none
+  std::vector<std::array<int, 2>> sides;  ///< the cubes on both sides, numbered from 1; 0: no cube
 };
 
 TEST(CgnsZones, PolyhedraAreNumberedBeforeOrAfterTheirFaces) {
@@ -455,7 +455,8 @@ TEST(CgnsZones, StepsHaveTheirOwnSolutionsAndGrids) {
 }
 
 TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
-  // CGNS SIDS, figures of the elements; the middles of edges and faces given by their corners from 1.
+  // Nodes in the middles of edges and faces are given by the corners, numbered from 1 (CGNS SIDS, figures of the
+  // elements).
   using Groups = std::vector<Numbers>;
   struct Case {
     CGNS_ENUMT(ElementType_t) type;
@@ -551,7 +552,7 @@ TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
     const cells::MeshFile mesh = read_mesh(folder / "a.cgns", options);
     std::uint64_t kept = 0;
     for (std::size_t i = 0; i < 4; ++i) kept += c.location == cell ? std::ranges::count(c.places, i) : 0;
-    if (c.location == point) kept = 1;  // one cube has all its corners
+    if (c.location == point) kept = 1;  // only one cube has values at all corners
     EXPECT_EQ(mesh.counts.cells_nan, 4 - kept);
     EXPECT_NEAR(testing::volume(mesh.mesh), static_cast<double>(kept), 1e-12);
     for (std::size_t t = 0; t < mesh.mesh.tets.size() && c.location == cell; ++t) {

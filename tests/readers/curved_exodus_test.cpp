@@ -180,7 +180,7 @@ TEST(CurvedExodus, EveryTypeOfTheManualHasItsVolumeAndItsField) {
 
 TEST(CurvedExodus, ANodeInATrianglesMiddleBendsIt) {
   TESSERA_VTK_OR_SKIP();
-  // Its function is 27 L1 L2 L3, whose integral over a triangle is 9/20 of the area.
+  // The function of the node in a triangle's middle is 27 L1 L2 L3. Its integral over a triangle is 9/20 of the area.
   const ReferenceCell tet8{
       "TETRA8", cells::CurvedFamily::tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear};
   BentCell bent{testing::places_of(tet8), std::vector<double>(8, 1), 1.0 / 6 + 0.45 * 0.5 * 0.1, 0};
@@ -191,8 +191,8 @@ TEST(CurvedExodus, ANodeInATrianglesMiddleBendsIt) {
 
 TEST(CurvedExodus, ANodeInsideChangesTheFieldAndNotTheShape) {
   TESSERA_VTK_OR_SKIP();
-  // For a cube with field 0 and 1 in its middle: the integral of 64 r (1 - r) s (1 - s) t (1 - t); for a tetrahedron
-  // that of 256 L1 L2 L3 L4, 256 / 7!.
+  // The field is 1 at the middle node of a cell and 0 at the others. Its integral over a cube is that of 64 r (1 - r) s
+  // (1 - s) t (1 - t); over a tetrahedron, that of 256 L1 L2 L3 L4, which is 256 / 7!.
   const ReferenceCell hex9{"HEX9", cells::CurvedFamily::hexahedron, hexahedron_inside, CellSpace::linear},
       tet11{"TETRA11", cells::CurvedFamily::tet, together(tet_edges, tet_inside)};
   for (const auto& [cell, volume, integral] :

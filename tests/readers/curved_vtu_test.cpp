@@ -19,7 +19,7 @@ namespace {
 
 using testing::BentCell;
 
-/// A cell of these degrees, bent like a quadratic one with another numbering.
+/// A Lagrange cell of these degrees, bent like a quadratic cell with another numbering.
 BentCell bent_lagrange(const std::array<int, 3>& degrees, bool is_old) {
   std::size_t nodes = 1;
   for (const int degree : degrees) nodes *= static_cast<std::size_t>(degree) + 1;

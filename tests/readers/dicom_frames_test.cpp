@@ -28,7 +28,8 @@ using test::has_note;
 constexpr std::size_t frame_size = 12;
 const std::string upright = "1\\0\\0\\0\\1\\0";
 
-/// The samples of frame k at its place, before scaling: 100 k, 100 k + 1, ...
+/// The stored samples of all frames. With the slope of its frame, a frame at place p has the samples 100 p, 100 p + 1,
+/// ...
 std::vector<std::int16_t> samples_of(const std::vector<int>& places, const std::vector<double>& slopes = {}) {
   std::vector<std::int16_t> samples;
   for (std::size_t f = 0; f < places.size(); ++f)
@@ -91,7 +92,7 @@ TEST_F(DicomFrameFiles, HaveScalesOfTheirOwn) {
 }
 
 TEST_F(DicomFrameFiles, AtOnePositionAreTimeSteps) {
-  // By their temporal positions, in the reverse order of the frames.
+  // Temporal positions determine the order of the steps; here they are in the reverse order of the frames.
   DicomFrames file = frames_at({0, 1, 2, 0, 1, 2});
   for (std::size_t f = 0; f < 6; ++f)
     file.each[f] = dicom_group(0x20, 0x9111, dicom_element(0x20, 0x9128, "UL", test::dicom_little(f < 3 ? 2 : 1, 4))) +
@@ -102,7 +103,7 @@ TEST_F(DicomFrameFiles, AtOnePositionAreTimeSteps) {
   EXPECT_EQ(last.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_EQ(last.range, (scene::ValueRange{-211, 0, 0}));
   EXPECT_EQ(all_samples(*open(file, {.time_step = 0}).source), wanted(3));
-  // Without them by the order of the frames, one volume after the other or position by position.
+  // Without temporal positions, the order of the frames decides: one volume after the other, or position by position.
   DicomFrames after = frames_at({0, 1, 2, 0, 1, 2});
   for (std::size_t k = 3 * frame_size; k < 6 * frame_size; ++k) after.samples[k] = 7;
   EXPECT_EQ(all_samples(*open(after, {.time_step = 0}).source), wanted(3));
@@ -186,7 +187,7 @@ TEST_F(DicomFrameFiles, ShowOneOfSeveralDirectionsAndRefuseASinglePosition) {
   const VolumeFile most = open(file);
   EXPECT_EQ(all_samples(*most.source), wanted(3));
   EXPECT_TRUE(has_note(most, "frames have 2 different directions or spacings, and only the 3 frames of one are read"));
-  // One with another spacing, and all with a spacing that differs from the file's.
+  // First one frame has another spacing; then all frames have a spacing that differs from the file's.
   file.each.back() = test::dicom_position({10, -20, 12.5}) + test::dicom_measures(1.5, 1, 9);
   EXPECT_EQ(all_samples(*open(file).source), wanted(3));
   for (std::string& each : file.each) each += test::dicom_measures(1.5, 1, 9);

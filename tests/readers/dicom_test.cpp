@@ -43,7 +43,7 @@ struct Slice {
   std::vector<std::int16_t> samples{};
   std::vector<std::int16_t> padding{};  ///< empty, a value, or a value and the limit of a range
   bool is_deflated = false;
-  bool is_wide = false;  ///< samples are the upper halves of unsigned 32-bit numbers, the lower ones are 1
+  bool is_wide = false;  ///< samples are the upper halves of unsigned 32-bit numbers; all lower halves are 1
 };
 
 constexpr const char* ct_storage = "1.2.840.10008.5.1.4.1.1.2";
@@ -115,7 +115,7 @@ class Dicom : public ::testing::Test {
 };
 
 TEST_F(Dicom, ADirectoryOfSlicesIsOneVolumeOrderedByPosition) {
-  // Names and numbers have another order than the positions.
+  // The names and the numbers are in another order than the positions.
   const double z[] = {5, 3, 7};
   for (int k = 0; k < 3; ++k)
     write(fmt::format("{}.dcm", k), {.z = z[k], .number = 3 - k, .intercept = -1000, .samples = twelve(100 * k)});
@@ -165,7 +165,7 @@ TEST_F(Dicom, OtherSpacingsAreSeparateStacks) {
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_EQ(volume.source->geometry().spacing.x, 0.5);
   EXPECT_TRUE(has_note(
-      volume, "slices of 2 different series, sizes, spacings or directions; only the 3 slices of one are shown"));
+      volume, "slices of 2 different series, sizes, spacings or directions; only the 3 slices of one group are shown"));
 }
 
 TEST_F(Dicom, RefusesMosaics) {
@@ -226,7 +226,8 @@ TEST_F(Dicom, ShowsTheLargestOrTheNamedSeries) {
   const VolumeFile largest = open_volume(folder.path());
   EXPECT_EQ(largest.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_TRUE(has_note(
-      largest, "slices of 4 different series, sizes, spacings or directions; only the 3 slices of one are shown"));
+      largest,
+      "slices of 4 different series, sizes, spacings or directions; only the 3 slices of one group are shown"));
   EXPECT_EQ(all_samples(*open_volume(folder / "4.dcm").source)[0], 3);
   expect_no_volume(folder / "rgb1.dcm", "coloured");
   expect_no_volume(folder / "scout.dcm", "single slice");
@@ -258,7 +259,8 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
 }
 
 TEST_F(Dicom, PaddingIsBlank) {
-  // A value in one slice, a range in the other, given from its upper end; values are scaled, padding is not.
+  // One slice has a padding value, the other a padding range, given from its upper end. Samples are scaled, padding
+  // values are not.
   write("0.dcm", {.z = 0, .number = 1, .slope = 2, .intercept = 10, .samples = twelve(-3), .padding = {-2}});
   write("1.dcm", {.z = 1, .number = 2, .slope = 2, .intercept = 10, .samples = twelve(0), .padding = {5, 3}});
   const VolumeFile volume = open_volume(folder.path());
@@ -287,7 +289,7 @@ TEST_F(Dicom, WholeValuesBeyondThirtyOneBitsAreExact) {
   EXPECT_EQ(all_samples(*volume.source)[11], 720897.0);
   for (int k = 0; k < 2; ++k)
     write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .number = k, .intercept = -10, .samples = upper, .is_wide = true});
-  const VolumeFile beyond = open_volume(folder.path());  // from -9 on: no 32-bit integer type
+  const VolumeFile beyond = open_volume(folder.path());  // values begin at -9: no 32-bit integer type fits
   EXPECT_EQ(beyond.source->grid().type, scene::SampleType::float64);
   EXPECT_EQ(all_samples(*beyond.source)[5], 4294901751.0);
 }

@@ -23,7 +23,7 @@ using testing::message_of;
 enum class Layout : std::uint8_t { gold_text, gold_binary, six_text, six_binary };
 constexpr Layout layouts[] = {Layout::gold_text, Layout::gold_binary, Layout::six_text, Layout::six_binary};
 
-/// The contents of such a file, in order.
+/// The contents of an EnSight file of geometry or values, in order.
 class Content {
  public:
   explicit Content(Layout layout)
@@ -166,7 +166,7 @@ TEST_F(EnsightValues, OmitsFilesThatEndInsideTheLastNumberByName) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : {Layout::gold_text, Layout::six_text})
     for (const auto& [name, variable] : {std::pair("a.f", "f"), std::pair("a.v", "v"), std::pair("a.g", "g")})
-      for (const std::size_t bytes : {2u, 5u, 8u}) {  // of `e+01`, of the digits before
+      for (const std::size_t bytes : {2u, 5u, 8u}) {  // within `e+01`, or within the digits before it
         SCOPED_TRACE(fmt::format("{} without {} bytes", name, bytes));
         write_case(layout);
         cut(name, bytes);
@@ -207,7 +207,7 @@ TEST_F(EnsightValues, OmitsFilesThatEndBeforeOrBetweenNumbersByName) {
     for (const std::string& more :
          {std::string("par"), Content(layout).part(2).text.substr(0, layout == Layout::gold_binary ? 82 : 5),
           Content(layout).part(2).line("tetra4").text.substr(0, Content(layout).part(2).text.size() + 5)}) {
-      if (more.size() == 5 && !Content(layout).is_gold) continue;  // the number is in the part's line
+      if (more.size() == 5 && !Content(layout).is_gold) continue;  // here, the number is in the part's line
       SCOPED_TRACE(more);
       folder.write("a.g", whole + more);
       const std::vector<std::string> notes = left_out(read());
@@ -425,7 +425,7 @@ TEST_F(EnsightSteps, OmitsMissingAndTruncatedStepsByName) {
   }
 }
 
-TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float is smaller
+TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 rounded to float is smaller than 0.7
   TESSERA_VTK_OR_SKIP();
   write_steps(Layout::gold_text, "");
   folder.write("a.f", steps[0] + steps[1] + steps[2]);

@@ -54,19 +54,21 @@ std::string msh2(const std::vector<std::string>& elements, const std::string& mo
   return text + "$EndElements\n" + more;
 }
 
-/// Tet `number` with these numbers between its type and its nodes.
+/// Tet `number` with `tags` between its type and its nodes.
 std::string tet(int number, const std::string& tags, const char* of) {
   return fmt::format("{} 4 {} {}", number, tags, of);
 }
 
-/// Each of the two is in its own group and in `all`, and listed once for each, as Gmsh writes them.
+/// Each of the two tets is in a separate group and in the group `all`. It is listed once for each group, as Gmsh writes
+/// it.
 std::vector<std::string> listed_twice(const char* left_entity, const char* right_entity) {
   const auto tags = [](int group, const char* entity) { return fmt::format("2 {} {}", group, entity); };
   return {tet(1, tags(1, left_entity), corner_nodes), tet(2, tags(3, left_entity), corner_nodes),
           tet(3, tags(2, right_entity), middle_nodes), tet(4, tags(3, right_entity), "5 4 3 2")};
 }
 
-/// The same as binary numbers, or each of the two in its own partition and a ghost of the other's.
+/// The same tets as binary numbers. If partitioned, each tet is in a separate partition and a ghost of the other
+/// partition.
 std::string binary_msh2(bool is_partitioned = false) {
   const auto put = [](std::string& bytes, auto number) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -123,7 +125,7 @@ TEST_F(GmshGroups, AreTheElementsOwnWhereOneEntityHasAll) {
   EXPECT_EQ(read(text).counts.cells_read, 2u);
   EXPECT_NEAR(volume_of(text, {"left"}), corner, 1e-12);
   EXPECT_NEAR(volume_of(text, {"right"}), middle, 1e-12);
-  // The smallest group colors a cell, whatever its number.
+  // A cell has the number of its group with the fewest cells, regardless of the order of the groups' numbers.
   const cells::MeshFile mesh = read(text, {}, "PhysicalGroupId");
   ASSERT_EQ(mesh.mesh.scalars.size(), 2u);
   EXPECT_EQ(std::min(mesh.mesh.scalars[0], mesh.mesh.scalars[1]), 1);

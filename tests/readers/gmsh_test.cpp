@@ -312,7 +312,7 @@ TEST_F(Gmsh, ThirdOrderTetrahedraComeInVtksOrder) {
 }
 
 TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
-  // Edges in thirds, the same in both; faces and inside differ.
+  // Both formats have nodes at thirds of the edges, in different orders. The nodes on faces and inside differ as well.
   const Points corners = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {3, 3, 3}, {0, 3, 3}};
   const auto thirds = [&](Points& points, const Edges& edges) {
     for (const auto& [a, b] : edges)

@@ -309,7 +309,8 @@ TEST(VtkHdfImages, HaveTimeSteps) {
     w.group("VTKHDF/Steps"), w.group("VTKHDF/Steps/PointDataOffsets");
     w.numbers("VTKHDF/Steps", "NSteps", {3});
     w.array("VTKHDF/Steps/Values", H5T_IEEE_F64LE, {3}, {0, 0.5, 1});
-    w.array("VTKHDF/Steps/PointDataOffsets/f", H5T_STD_I64LE, {3}, {0, 1, 0});  // the last is the first again
+    // The third step has the data of the first.
+    w.array("VTKHDF/Steps/PointDataOffsets/f", H5T_STD_I64LE, {3}, {0, 1, 0});
   }
   ReadOptions options;
   for (const std::size_t step : {0, 1, 2}) {

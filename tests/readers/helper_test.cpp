@@ -66,7 +66,7 @@ TEST(Helper, InheritsNoFileNoSignalsAndNoRank) {
   const auto helper = std::make_shared<HelperProcess>();
   ::unsetenv("OMPI_COMM_WORLD_RANK");
   ::unsetenv("PMIX_RANK");
-  // It replies, so it has completed its start.
+  // The helper replies, so it has completed its start.
   const ForeignFile opened =
       open_foreign(helper, folder.write("m.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false))),
                    {{"reader", "vtk_xml"}, {"type", "UnstructuredGrid"}});
@@ -151,7 +151,7 @@ TEST(Helper, ReportsProgress) {
 
 TEST(Helper, StreamsAnArrayInPartsAndGoesOnAfterAnExceptionInOne) {
   const test::TemporaryFolder folder;
-  constexpr int n = 110;  // floats of more than two slots of the window
+  constexpr int n = 110;  // n^3 floats fill more than two slots of the window
   const auto helper = std::make_shared<HelperProcess>();
   const ForeignFile opened = open_foreign(helper, folder.write("v.vti", image_text(n, "0 109 0 109 0 109")),
                                           {{"reader", "vtk_xml"}, {"type", "ImageData"}});
@@ -235,7 +235,7 @@ TEST(Helper, ADescriptionIsReturnedUnchanged) {
   EXPECT_EQ(got.point_fields[0].bytes(), 3 * 8 * (1ull << 33));
   EXPECT_EQ(got.point_fields[0].tally.low, -0.3);
   EXPECT_EQ(got.point_fields[0].tally.not_finite, 9u);
-  // Anything else is refused, whichever byte differs.
+  // Truncated contents are refused, at whichever byte they end.
   for (std::size_t cut = 0; cut < bytes.size(); ++cut)
     EXPECT_ANY_THROW(contents_of(std::span(bytes).first(cut))) << cut;
 }

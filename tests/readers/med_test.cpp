@@ -98,7 +98,7 @@ TEST(Med, CylinderCoordinatesAreTurnedToXyz) {
   for (const auto& [unit, quarter] : {std::pair("rad", std::acos(0.0)), std::pair("", std::acos(0.0)),
                                       std::pair("deg", 90.0), std::pair("degree", 90.0)}) {
     write_cube_in((folder / "a.med").string(), MED_CYLINDRICAL, unit, quarter);
-    // Between the chords of a quarter of rings of radii 1 and 3.
+    // The volume is bounded by chords of a quarter of two circles with radii 1 and 3.
     EXPECT_NEAR(testing::volume(read_mesh(folder / "a.med").mesh), 8, 1e-5) << unit;
     std::filesystem::remove(folder / "a.med");
   }
@@ -269,7 +269,7 @@ TEST(Med, VersionTwoIsRead) {
   write_version_2((folder / "bar.med").string());
   const cells::MeshFile mesh = read_mesh(folder / "bar.med");
   EXPECT_EQ(mesh.counts.cells_read, 2u);
-  EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square of 4 under a height of 3
+  EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square base with an area of 4, and a height of 3
 }
 
 TEST(Med, RefusesFilesThatLeadToAnotherDirectory) {
@@ -296,7 +296,7 @@ TEST(Med, RefusesDamagedFilesInOneLine) {
   test::expect_bad_input([&] { read_mesh(folder.write("text.med", "no HDF5")); }, {"text.med: it cannot be opened"});
   test::expect_no_crash_of_changes(folder, "changed.med", whole, [](const auto& file) { read_mesh(file); });
   if (!has_reader(Reader::vtk)) return;  // otherwise no program inspects HDF5
-  // With another name the error names the format and a remedy.
+  // For a file with another name, the error names the format and a remedy.
   std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
   test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); },
                          {"bar.h5: it is an HDF5 file that contains a MED mesh", ".med"});

@@ -27,7 +27,8 @@ struct AxisOfFile {
   std::array<double, 3> cosines;
 };
 
-/// Samples 0, 1, ... of 2 x 3 x 4 in the order of the file's axes, and if `steps` > 1 that many times as many.
+/// The samples 0, 1, ... of a volume of 2 x 3 x 4, in the order of the file's axes; if `steps` > 1, of this many
+/// volumes.
 void write_minc2(const std::string& name, misize_t steps) {
   // The file's order is not z, y, x.
   const std::array<AxisOfFile, 3> axes = {AxisOfFile{"yspace", 3, 20, -2, {-1, 0, 0}},
@@ -83,7 +84,8 @@ TEST(Minc2, RealValuesArePlacedByTheDirectionCosines) {
         EXPECT_NEAR(place.x, -(20 - 2 * j), 1e-12);
         EXPECT_NEAR(place.y, 10 + 0.5 * i, 1e-12);
         EXPECT_NEAR(place.z, 30 + 3 * k, 1e-12);
-        // In the file x is the fastest, then z, then y. Float represents the sum of an integer and a half exactly.
+        // In the file, x is the fastest axis, then z, then y. A float represents the sum of an integer and a half
+        // exactly.
         EXPECT_EQ(samples[static_cast<std::size_t>(i + 4 * (j + 3 * k))], 5 + (i + 4 * (k + 2 * j)) / 2.0);
       }
 }
@@ -165,7 +167,7 @@ TEST(Minc2, TimeStepsAreChosen) {
   test::expect_no_volume(folder / "f.mnc", "there is no time step 2", options);
 }
 
-/// Three bytes per sample, x the fastest except for these; `steps` > 1 of them.
+/// Three bytes per sample; except for these, x is the fastest axis. If `steps` > 1, this many volumes.
 void write_minc2_vectors(const std::string& name, misize_t steps) {
   std::vector<midimhandle_t> dimensions;
   std::vector<misize_t> first, counts;

@@ -100,7 +100,7 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     if (row.needs.empty()) continue;
     const ReaderProgram& program = reader_program(row.needs.front());
     const std::string extensions = row.extensions;
-    // The reader detects FLASH: to this library it is HDF5.
+    // The reader detects FLASH; this library identifies such files as HDF5.
     if (extensions.empty() && row.recognizes == nullptr) continue;
     // For VTK XML of a kind without a row, this library itself reports the kind.
     if (row.container == Container::vtk_xml && !row.is_listed) continue;

@@ -36,8 +36,8 @@ glm::dvec3 at(const scene::GridGeometry& g, const GridIndex& index) {
   return scene::world_of_index(g, {index[0], index[1], index[2]});
 }
 
-/// Air with 5 x 4 x 3 samples at two times: levels decrease and are not uniform, latitudes decrease. T is float with a
-/// fill value, P packed in shorts with one, W on other levels.
+/// Air with 5 x 4 x 3 samples at two times. Levels decrease and are not uniform; latitudes decrease. T is a float with
+/// a fill value, P is packed in shorts with a fill value, and W is on other levels.
 void write_air(const std::filesystem::path& file, int mode) {
   NetcdfWriter w(file, mode);
   const int time = w.dimension("time", NC_UNLIMITED), lev = w.dimension("lev", 3), ilev = w.dimension("ilev", 2),
@@ -88,7 +88,7 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPositions) {
     EXPECT_EQ(at(g, {4, 1, 1}), glm::dvec3(40, 30, 500));
     EXPECT_EQ(at(g, {4, 3, 2}), glm::dvec3(40, -30, 100));
     const std::vector<double> samples = all_samples(*volume.source);
-    EXPECT_EQ(samples[0], 100);  // of the last time step
+    EXPECT_EQ(samples[0], 100);  // value at the last time step
     EXPECT_EQ(samples[59], 159);
     EXPECT_TRUE(std::isnan(samples[8]) && std::isnan(samples[9]));
     EXPECT_EQ(volume.range, (scene::ValueRange{100, 159, 2}));
@@ -297,7 +297,7 @@ TEST(NetcdfGrids, RefusesDamagedFilesInOneLine) {
     }
   }
   for (const int mode : {0, NC_NETCDF4})
-    for (const bool has_time : {false, true}) {  // it is not the third spatial dimension
+    for (const bool has_time : {false, true}) {  // time does not count as the third spatial dimension
       {
         NetcdfWriter w(folder / "flat.nc", mode);
         std::vector<int> dimensions;
@@ -312,7 +312,7 @@ TEST(NetcdfGrids, RefusesDamagedFilesInOneLine) {
     }
 }
 
-/// As a grid or a mesh.
+/// Reads the file as a grid or as a mesh.
 void read_any(const std::filesystem::path& file) {
   if (is_volume(file))
     open_volume(file);
@@ -391,7 +391,7 @@ TEST(Minc, RealValuesArePlacedByTheDirectionCosines) {
   expect(1, 2, 1);
 }
 
-/// 24 samples from `first` on, with real values from 0 to 230 over the valid range.
+/// A volume of 24 samples from `first` on, with real values from 0 to 230 over the valid range.
 VolumeFile minc_of(const std::filesystem::path& file, nc_type type, const char* sign, nc_type of_range,
                    const std::vector<double>& range, double first) {
   {

@@ -110,7 +110,7 @@ TEST(NetcdfValues, OutsideTheirValidRangeAreBlank) {
     expect_samples(read_back(type, stored, {{"valid_max", type, {5}}}), {-5, 0, 1, 2, 3, 4, 5, nan});
     expect_samples(read_back(type, stored, {{"valid_min", type, {0}}}), {nan, 0, 1, 2, 3, 4, 5, 90});
   }
-  // For packed numbers it applies to the stored ones, unless it has the type of the unpacked ones.
+  // For packed numbers, the valid range applies to the stored numbers, unless it has the type of the unpacked numbers.
   const std::vector<double> unpacked = {nan, 10, 12, 14, 16, 18, 20, nan};
   const Attribute scale{"scale_factor", NC_DOUBLE, {2}}, shift{"add_offset", NC_DOUBLE, {10}};
   expect_samples(read_back(NC_SHORT, stored, {scale, shift, {"valid_range", NC_SHORT, {0, 5}}}), unpacked);

@@ -130,7 +130,7 @@ TEST(Plot3d, ReportsARecordForEachPlane) {
   EXPECT_NE(message.find("it has a record for each plane of a grid (/PLANES)"), std::string::npos) << message;
 }
 
-/// The same as text, five numbers a line.
+/// Writes the same data as text, with five numbers per line.
 class TextWriter {
  public:
   std::string text;

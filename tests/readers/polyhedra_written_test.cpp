@@ -104,7 +104,7 @@ TEST(PolyhedraWritten, ByVtkAreReadInEveryEncoding) {
     }
 }
 
-/// A zone with faces as NGON_n and cells as NFACE_n, in which a cell refers to a face that it shares as the second by a
+/// A zone with faces as NGON_n and cells as NFACE_n. The second of two cells that share a face refers to the face by a
 /// negative number.
 void write_cgns(const std::filesystem::path& file, const cells::CellBlock& block) {
   const std::vector<Faces> cells = testing::faces_of_cells(block);

@@ -60,7 +60,7 @@ std::string fluent(const Cubes& cubes) {
       fmt::format("(0 \"cubes\")\n(2 3)\n(10 (0 1 {0:x} 0 3))\n(10 (1 1 {0:x} 1 3)(\n", cubes.points.size());
   for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
   text += fmt::format("))\n(12 (0 1 {0:x} 0))\n(12 (2 1 {0:x} 1 4))\n", cubes.cells.size());
-  // Keyed by sorted corners: the corners in the first cell's order, outward, and the cells.
+  // The key is the sorted corners. The value has the corners in the first cell's order, outward, and the cells.
   std::map<std::array<int, 4>, std::pair<std::array<int, 4>, std::vector<std::size_t>>> faces;
   constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}, {0, 4, 7, 3}}};
@@ -74,7 +74,7 @@ std::string fluent(const Cubes& cubes) {
       if (face.second.empty()) face.first = corners;
       face.second.push_back(c + 1);
     }
-  std::array<std::string, 2> lines;  // of faces between cells and of walls
+  std::array<std::string, 2> lines;  // faces between cells, and faces of walls
   std::array<std::size_t, 2> counts{};
   for (const auto& [key, face] : faces) {
     const std::size_t wall = face.second.size() == 1 ? 1 : 0;
@@ -260,7 +260,7 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   none.blocks = {"solid"};
   test::expect_bad_input([&] { testing::read_in_parts(folder / "case.foam", 2, none); },
                          {"case.foam", "there is no block", "internalMesh"});
-  // As some users copy it from a cluster: without the files shared by the processors.
+  // Some users copy a case from a cluster without the files that the processors share.
   std::filesystem::remove_all(folder / "system");
   std::filesystem::remove(folder / "case.foam");
   expect_cube(read_mesh(folder.path()), 4);
@@ -346,7 +346,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   EXPECT_EQ(file.surfaces, std::vector<std::string>{"2"});
   ReadOptions options;
   options.blocks = {"solid"};
-  // The block that is not requested does not even exist.
+  // The file of the block that is not requested does not even exist.
   const std::string nested =
       "<Block index=\"0\" name=\"fluid\"><DataSet index=\"0\" name=\"inner\" file=\"gone.vtu\"/></Block><Block "
       "index=\"1\" name=\"solid\"><DataSet index=\"0\" name=\"inner\" file=\"b.vti\"/></Block>";

@@ -204,7 +204,8 @@ class EnzoWriter {
   EnzoWriter(const std::filesystem::path& folder, Field at)
       : at_(std::move(at)), data_(folder / "output_0003.cpu0000") {}
 
-  /// The siblings from one on: all of them, then the contents of the last, ..., in Enzo's order.
+  /// Adds the siblings from number `from` on, in Enzo's order: first all siblings, then the contents of the last one,
+  /// then those of the one before it, and so on.
   void add(const std::vector<EnzoGrid>& siblings, std::size_t from = 0) {
     const EnzoGrid& grid = siblings[from];
     const int id = ++last_;

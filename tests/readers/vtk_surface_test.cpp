@@ -74,7 +74,7 @@ TEST_F(VtkSurfaces, PolygonsAndStripsAreFilledWithTheirNumbers) {
     }
   }
   EXPECT_NE(std::find(polygons.notes.begin(), polygons.notes.end(),
-                      "1 is left out of the surface's arrays: only arrays with one number per point become fields"),
+                      "1 array of the surface is left out: only arrays with one number per point become fields"),
             polygons.notes.end());
   expect_cube(read_mesh(folder.write("b.vtp", vtp(0, cells("Strips", strips, strip_ends)))));
 }

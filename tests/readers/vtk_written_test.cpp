@@ -58,7 +58,7 @@ vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
   return grid;
 }
 
-/// Overlaps of cells 0 and 1, and of n - 1 with its copy.
+/// Expects two overlaps: of cell 0 with cell 1, and of cell n - 1 with its copy.
 void expect_pairs(const std::filesystem::path& file, int n) {
   const cells::MeshFile read = read_mesh(file);
   ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;

@@ -94,7 +94,7 @@ TEST_F(XdmfItems, SelectionsTakeTheSlowestDimensionFirst) {
   }
   for (const std::string& item : arrays({3, 5, 6})) EXPECT_EQ(values(selection("1 1 1 1 1 1 2 3 4", item)), inner);
   for (const std::string& item : arrays({48})) EXPECT_EQ(values(selection("24 1 24", item)), second);
-  // Of an array that is a selection itself.
+  // A selection from an array that is itself a selection.
   for (const std::string& item : arrays({3, 2, 3, 4}))
     EXPECT_EQ(values(selection("0 0 0 0 1 1 1 1 1 2 3 4", selection("1 0 0 0 1 1 1 1 2 2 3 4", item))), second);
 }

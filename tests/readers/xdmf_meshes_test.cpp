@@ -113,7 +113,7 @@ TEST_F(XdmfMeshes, ReferencesAreReplacedByTheirTargets) {
       "<Topology Reference=\"/Xdmf/Domain/Grid[@Name='mesh']/Topology\"/>"
       "<Geometry Reference=\"XML\">/Xdmf/Domain/Grid[1]/Geometry</Geometry>";
   expect_once(read(mesh_grid + series("u", step(mesh, "u", 0, 0) + step(mesh, "u", 1, 10))), 10);
-  // To items, and to an item that is a reference itself.
+  // References to items, and to an item that is itself a reference.
   const std::string items =
       "<DataItem Name=\"places\" Dimensions=\"5 3\" Format=\"XML\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataItem>"
       "<DataItem Name=\"same\" Reference=\"/Xdmf/Domain/DataItem[@Name='places']\"/>"

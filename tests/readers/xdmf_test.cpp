@@ -99,7 +99,7 @@ TEST_F(Xdmf, TetsHaveTheirPositionsAndFields) {
 }
 
 TEST_F(Xdmf, TimeStepsAreInTheOrderOfTheirTimes) {
-  // The second shares the first's topology and points, as solvers write it.
+  // The second grid shares the first one's topology and points, as solvers write it.
   const std::string later =
       "<Grid Name=\"later\" GridType=\"Uniform\">\n" + timed(2) +
       "<xi:include xpointer=\"xpointer(//Grid[@Name='early']/*[self::Topology or self::Geometry])\"/>\n" +

@@ -70,8 +70,8 @@ inline std::vector<TypeCase> all_types() {
   return types;
 }
 
-/// Converts a place of the cell's own coordinates to coordinates in which the cell is a polytope: pyramids have the
-/// apex (1/2, 1/2, 1), over the unit square.
+/// Converts a place in the cell's coordinates to coordinates in which the cell is a polytope. A pyramid then has the
+/// unit square as base and the apex (1/2, 1/2, 1).
 inline glm::dvec3 polytope_place(const TypeCase& type, const glm::dvec3& place) {
   if (!type.pyramid) return place;
   return {0.5 + (place.x - 0.5) * (1 - place.z), 0.5 + (place.y - 0.5) * (1 - place.z), place.z};

@@ -19,8 +19,9 @@ using scene::TransferFunction;
 
 constexpr scene::ImageSize size{18, 18};
 
-/// Lengths of order one between crossings of faces, seen from a distance of 5 (1e-15), by rays that meet faces at a
-/// slope of at least a hundredth; ten times that for the rounding of the closed form.
+/// Lengths between crossings of faces are of order one. Seen from a distance of 5, they have a rounding error of 1e-15.
+/// Faces that rays meet at a slope of at least a hundredth magnify it by 100; a factor of ten allows for the rounding
+/// of the closed form.
 constexpr double rounding = 1e-12;
 
 /// The map (x, y, z) -> (x, y, z + q(x, y)), for which every cell type with the degree of q gives an exact curved cell,
@@ -162,8 +163,8 @@ TEST(CurvedReference, FindsBothStretchesWhereARayLeavesACellAndComesBack) {
   }
 }
 
-/// A field of the cell's own coordinates, linear in (x, y) and in the height before the bend, squared if the type has
-/// second degree.
+/// A field of the cell's coordinates that is linear in (x, y) and in the height before the bend, with squares if the
+/// type has second degree.
 TEST(CurvedReference, IntegratesTheFieldOfEveryTypesBentCell) {
   // Extinction and colour are linear over the whole range: the optical depth is a polynomial's integral.
   const TransferFunction transfer_function({{-4, {0, 1, 0.5}, 0}, {4, {1, 0, 0.5}, 3.2}});
@@ -210,8 +211,8 @@ TEST(CurvedReference, IntegratesTheFieldOfEveryTypesBentCell) {
 
 /// Steps and steep ramps, where the field is at most cubic along rays, compared with the integral for grids.
 TEST(CurvedReference, SeesTheKnotsOfTheTransferFunctionWhereTheFieldPassesThem) {
-  // A step is a hundred units of extinction; the field's rounding moves it by 1e-15, and a hundred times that where the
-  // field almost has a turning point.
+  // A step is a hundred units of extinction. Rounding of the field moves the step by 1e-15, and by a hundred times as
+  // much where the field almost has a turning point.
   constexpr double error = 1e-11;
   const TransferFunction transfer_function({{-0.5, {1, 0, 0}, 0},
                                             {-0.2, {1, 1, 0}, 2},
@@ -341,7 +342,8 @@ TEST(CurvedReference, OfStraightTetsMatchesTheTetReference) {
   const scene::TetMesh constant = with_cell_data(tets, field);
   per_cell.scalars = constant.scalars;
   for (const scene::Camera& camera : cameras()) {
-    // Orthographic vertices are rounded by 2^-33 pixel there, not here; steps convert that to light.
+    // In orthographic views, the reference for tets rounds vertices by 2^-33 pixel, and the one for curved cells does
+    // not. At steps, this changes the light.
     const double error = camera.projection == ProjectionKind::perspective ? 1e-10 : 1e-8;
     const Reference truth(tets, camera, size, transfer_function), of_cells(constant, camera, size, transfer_function);
     const CurvedReference one(linear.cells(), camera, size, transfer_function),

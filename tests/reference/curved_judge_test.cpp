@@ -54,7 +54,7 @@ void set(scene::Image& image, PixelIndex at, const Pixel& p) {
   for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * image.index(at.x, at.y) + c] = static_cast<float>(rgba[c]);
 }
 
-/// Ten rows in the middle: in a sample of this many pixels one may be excused.
+/// Ten rows in the middle of the image. In a sample of this many pixels, one pixel may be excused.
 std::vector<PixelIndex> middle_rows() {
   std::vector<PixelIndex> pixels;
   for (int y = 60; y < 70; ++y)
@@ -82,7 +82,7 @@ TEST(CurvedJudge, AnImageOfCurvedCellsRoundedToFloatPasses) {
 TEST(CurvedJudge, ExcusesARoundSilhouetteOnlyWithinAThousandthOfAPixel) {
   const RoundCell cell;
   const CurvedReference reference = cell.reference();
-  // Where a row leaves the cell: between a ray that meets it and one that does not.
+  // Finds where a row leaves the cell, between a ray that meets the cell and one that does not.
   const double y = 64.37;
   double in = 64, out = 128;
   ASSERT_GT(reference.pixel(in, y).length, 0);
@@ -91,7 +91,8 @@ TEST(CurvedJudge, ExcusesARoundSilhouetteOnlyWithinAThousandthOfAPixel) {
     const double middle = (in + out) / 2;
     (reference.pixel(middle, y).length > 0 ? in : out) = middle;
   }
-  // The silhouette is round there: the length grows with the square root of the distance to it.
+  // The silhouette is round there: the length of a ray in the cell grows with the square root of the ray's distance
+  // to the silhouette.
   const double near = reference.pixel(in - 1e-6, y).length, farther = reference.pixel(in - 4e-6, y).length;
   EXPECT_NEAR(farther / near, 2, 0.01);  // the edge is known to 1e-9
 

@@ -55,7 +55,7 @@ TEST(FacePieces, HalvesOfHalvesAreTheSamePatch) {
 }
 
 TEST(FacePieces, SlopesAreThoseOfFiniteDifferences) {
-  constexpr double step = 1e-5, error = 1e-8;  // of step^2 times third derivatives
+  constexpr double step = 1e-5, error = 1e-8;  // step^2 times the third derivatives
   for (const auto& [triangle, a, b] : {std::tuple{true, 3, 3}, {false, 2, 3}}) {
     const FacePiece piece = any_piece(triangle, a, b);
     const glm::dvec2 place(0.3, 0.45);

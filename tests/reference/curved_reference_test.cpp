@@ -121,7 +121,7 @@ std::vector<DepthRange> sampled(const Brute& cell, const WorldRay& ray, double n
 }
 
 TEST(CurvedReference, AgreesWithBruteForceInAnyCell) {
-  // Bisection and differences give lengths to 1e-11; Simpson's rule on 200 steps the rest to 1e-9.
+  // Bisection and differences give lengths to 1e-11; Simpson's rule with 200 steps gives the other results to 1e-9.
   constexpr double error = 2e-10;
   const TransferFunction transfer_function({{-2, {0, 1, 0.5}, 0}, {3, {1, 0, 0.5}, 4}});
   const scene::Camera camera = looking({2.9, -2.3, 2.6}, {0.4, 0.4, 0.4}, ProjectionKind::perspective, 30, {0, 0, 1});
@@ -317,7 +317,7 @@ TEST(CurvedReference, IsTheSameFromAfar) {
   const CurvedReference near(mesh.cells(), from(4), size, transfer_function),
       far(mesh.cells(), from(4e5), size, transfer_function);
   for (const PixelIndex& p : all_pixels(size)) {
-    // Positions are rounded to 1e-10, which grazing faces and the field magnify.
+    // Positions have rounding errors of 1e-10, which grazing faces and the field magnify.
     const double x = p.x + 0.4873, y = p.y + 0.5241;
     EXPECT_NEAR(near.pixel(x, y).length, far.pixel(x, y).length, 1e-7) << x << ", " << y;
     EXPECT_NEAR(near.pixel(x, y).r, far.pixel(x, y).r, 1e-7) << x << ", " << y;
@@ -330,7 +330,7 @@ TEST(CurvedReference, CellDataIsConstantInACell) {
   mesh.add(
       named("quadratic tet"), [](const glm::dvec3& p) { return warped(p) + glm::dvec3(0, 0, 1.5); }, any_field);
   mesh.association = Association::cell;
-  mesh.scalars = {0.25, 0.5};  // the second is on a step and uses its upper side
+  mesh.scalars = {0.25, 0.5};  // the second value is on a step, where the upper side counts
   const TransferFunction transfer_function({{0, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 2}, {0.5, {1, 1, 1}, 3}});
   const scene::Camera camera = looking({0.3, -3, 1}, {0.3, 0.3, 1}, ProjectionKind::orthographic, 1.2, {0, 0, 1});
   const CurvedReference reference(mesh.cells(), camera, size, transfer_function);

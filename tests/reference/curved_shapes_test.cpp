@@ -13,7 +13,7 @@
 namespace tessera::reference::curved_shapes_test {
 namespace {
 
-/// Rounding in shape functions with values up to 10 (order 5) that sum up to 125 terms.
+/// Rounding error of shape functions: sums of at most 125 terms (order 5), whose values are at most 10.
 constexpr double rounding = 1e-12;
 
 /// Places in a cell's domain.
@@ -117,7 +117,7 @@ TEST(CurvedShapes, GradientsAreThoseOfFiniteDifferences) {
         shape.basis.evaluate(before, low, unused);
         shape.basis.evaluate(after, high, unused);
         shape.basis.evaluate(place, values, gradients);
-        // Third derivatives of order five reach some hundreds: the error is step^2 times these.
+        // For order five, third derivatives reach several hundred; the error is step^2 times these derivatives.
         for (std::size_t i = 0; i < n; ++i)
           EXPECT_NEAR((high[i] - low[i]) / (2 * step), gradients[i][axis], 1e-7) << type.name;
       }
@@ -137,7 +137,7 @@ TEST(CurvedShapes, FacesAreTheCellsOwnOnThem) {
       shape.basis.evaluate(place, values, gradients);
       double on_face = 0;
       for (const std::size_t i : face.control) on_face += values[i];
-      EXPECT_NEAR(on_face, 1, rounding) << type.name;  // all others vanish: they are not negative in the domain
+      EXPECT_NEAR(on_face, 1, rounding) << type.name;  // all others vanish, because they are not negative in the domain
     }
   }
 }

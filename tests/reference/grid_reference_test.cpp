@@ -80,7 +80,7 @@ TEST(GridReference, AConstantFieldObeysBeerLambertInEveryProjection) {
         EXPECT_NEAR(p.b, 0.25 * p.a, rounding);
         thickest = std::max(thickest, p.length);
       }
-      EXPECT_GT(thickest, 0.7);  // an eye inside sees only what is in front of it
+      EXPECT_GT(thickest, 0.7);  // if the eye is inside, only matter in front of it is visible
     }
 }
 
@@ -103,7 +103,7 @@ TEST(GridReference, ALinearFieldIsTheSameAsInTetrahedra) {
       const Reference tets(mesh, camera, window, bumpy, emission);
       const auto a = grid.pixels(all_pixels(window)), b = tets.image();
       for (std::size_t i = 0; i < a.size(); ++i) {
-        expect_equal(a[i], b[i], 1e-8);  // tets' rays are rounded to 2^-32 pixel
+        expect_equal(a[i], b[i], 1e-8);  // rays of tets are rounded to 2^-32 pixel
         if (a[i].a > 1e-6) {
           EXPECT_NEAR(a[i].z, b[i].z, 1e-6);
         }
@@ -139,7 +139,7 @@ TEST(GridReference, OneVoxelOfEightValuesIsTheSumOfVeryManySamples) {
       red += k.extinction * k.color.x * std::exp(-depth - k.extinction * dz / 2) * dz;
       depth += k.extinction * dz;
     }
-    EXPECT_NEAR(pixel.r, red, 5e-4);  // 2e-5 long steps: errors at a step of the function by 5 and at both ends
+    EXPECT_NEAR(pixel.r, red, 5e-4);  // steps are 2e-5 long: errors at a step of the function by 5 and at both ends
     EXPECT_NEAR(pixel.a, -std::expm1(-depth), 5e-4);
   }
 }
@@ -292,7 +292,8 @@ TEST(GridReference, ABlankSampleBlanksItsVoxelsAndNoMore) {
 }
 
 TEST(GridReference, KnotsNearerThanTheRoundingOfTheFieldHaveNoEffect) {
-  // Knots from 1e-40 to 1, and only those from 1e-12, where colour and extinction no longer change.
+  // One function has knots from 1e-40 to 1. The other has only those from 1e-12 on, where colour and extinction are
+  // constant.
   constexpr int count = 160;
   std::vector<scene::Knot> all, large;
   for (int n = 0; n <= count; ++n) {
@@ -306,7 +307,7 @@ TEST(GridReference, KnotsNearerThanTheRoundingOfTheFieldHaveNoEffect) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> decade(-40, 0);
   for (int i = 0; i < 20; ++i) {
-    // Every second sample is large, so that the field is small in points only.
+    // Every second sample is large, so that the field is small only at points.
     int n = 0;
     const Source grid = sampled(lattice({4, 5, 6}, glm::dvec3(-1), glm::dvec3(1)),
                                 [&](const glm::dvec3&) { return ++n % 2 == 0 ? 1 : std::pow(10, decade(random)); });

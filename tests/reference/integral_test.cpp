@@ -16,7 +16,7 @@ constexpr double rounding = 1e-14;  // sums of a few hundred terms below one, in
 
 /// The integral over one segment by Simpson's rule with very many steps between given places, in long double.
 std::array<double, 4> simpson(const std::vector<Knot>& knots, Emission emission, double length, double s0, double s1) {
-  const int steps = 42000;  // 3,000 between knots 0.1 apart
+  const int steps = 42000;  // 3,000 steps between knots that are 0.1 apart
   const scene::TransferFunction function(knots);
   const long double h = static_cast<long double>(length) / steps;
   long double optical_depth = 0, color[3] = {0, 0, 0};
@@ -154,7 +154,8 @@ TEST(Integral, AgreesWithSimpsonOnRandomTransferFunctions) {
         Integral integral(knots, emission);
         integral.add(1.5, s0, s1, 0, 1);
         const std::array<double, 4> truth = simpson(knots, emission, 1.5, s0, s1);
-        // Simpson's own error: places 1e-9 inside the steps, slope up to 100 over 42,000 steps.
+        // The error of Simpson's rule: values are taken 1e-9 inside the steps, with slopes of up to 100 and 42,000
+        // steps.
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(integral.color()[c], truth[c], 1e-11) << "seed " << seed;
         EXPECT_NEAR(integral.opacity(), truth[3], 1e-11) << "seed " << seed;
       }

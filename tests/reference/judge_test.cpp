@@ -85,7 +85,8 @@ TEST(Judge, NotANumberAndInfinityAreInfinitelyWrong) {
 }
 
 TEST(Judge, ExcusesTheOtherSideOfAFaceOnlyNearbyAndRarely) {
-  // The pixel column in the window's middle is centred on the face between the materials, up to `away` of a pixel.
+  // The pixel column in the window's middle is centred on the face between the materials, with an offset of `away`
+  // pixels.
   const auto judged = [](double away, int width, int height, int wrong_pixels) {
     const double pixel = 1.4 / height;
     const TwoMaterials scene(width, height, away * pixel);
@@ -149,7 +150,7 @@ TEST(RandomPixels, AreDifferentInsideAndRepeatable) {
 }
 
 TEST(RandomPixels, CoverTheImageEvenly) {
-  // Each of the 12 pixels is in a quarter of the samples of 3.
+  // Each sample has 3 of the 12 pixels, so each pixel is in a quarter of the samples.
   std::array<int, 12> count{};
   const int samples = 4000;
   for (int seed = 0; seed < samples; ++seed)

@@ -77,7 +77,8 @@ TEST(ReferenceLayers, OfHomogeneousMatterAreOfOneThickness) {
   }
 }
 
-/// Extinction k z below the front: the optical depth of the first d is 2 k (1 - d / 2) d + ..., a parabola.
+/// The extinction is k (1 + z). From the front at z = 1, the optical depth of a distance d is k (2 d - d^2 / 2), a
+/// parabola.
 TEST(ReferenceLayers, OfARampEndAtTheClosedFormsDepth) {
   const double steepness = 2;
   const Both both(height, scene::TransferFunction({{-1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 2 * steepness}}));
@@ -125,7 +126,7 @@ TEST(ReferenceLayers, ASurfaceIsTheEndOfTheLayerItFills) {
   surfaces.light = {1, 0, 0, 1};
   const Both both(height, scene::TransferFunction({{0, {1, 1, 1}, 0}}), surfaces);
   for (const auto& layers : both.layers({0.75, 4})) {
-    // From the eye on: 0.5 and 0.5, which together equal the threshold; 1; 0.5; none.
+    // From the eye on, the surfaces have the opacities 0.5 and 0.5 (together equal to the threshold), 1, and 0.5.
     const double opacities[] = {0.75, 1, 0.5, 0}, places[] = {0.65, -0.35, -0.55, 0};
     for (std::size_t n = 0; n < 4; ++n) {
       EXPECT_NEAR(layers[n].a, opacities[n], 1e-12) << n;

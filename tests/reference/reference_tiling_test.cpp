@@ -16,7 +16,8 @@ using scene::TransferFunction;
 const TransferFunction grey({{0, {0.5, 0.5, 0.5}, 1}});
 double any_field(const glm::dvec3& p) { return p.x + 2 * p.y - 0.5 * p.z; }
 
-/// The tets in which a ray is for more than a fiftieth of a unit: excludes those that a small shift of it adds.
+/// The tets in which a ray's path is longer than a fiftieth of a unit. This excludes tets that a small shift of the ray
+/// adds.
 std::set<std::size_t> cells_of(const std::vector<RaySegment>& segments) {
   std::set<std::size_t> cells;
   for (const RaySegment& s : segments)
@@ -138,7 +139,7 @@ TEST(ReferenceTiling, FlatCellsAreKeptWithNoLength) {
     }
     EXPECT_DOUBLE_EQ(length, 1);
   }
-  EXPECT_EQ(flat, 256u + 136u);  // shifted to the right, the sixteen rays of the diagonal are in this half
+  EXPECT_EQ(flat, 256u + 136u);  // the sixteen rays of the diagonal, shifted to the right, are in this half
 }
 
 TEST(ReferenceTiling, WarpedAndFlattenedMeshesStillTile) {

@@ -71,7 +71,7 @@ TEST(Ranked, StartsWithTheMostSuspiciousPixelsSpreadOverTheImage) {
   const std::vector<PixelIndex> order = ranked(map, size, 60);
   EXPECT_EQ(order.size(), 60u);
   const auto place = [&](PixelIndex p) { return std::find(order.begin(), order.end(), p) - order.begin(); };
-  EXPECT_LT(place({40, 40}), 12);  // the fifth block of 8x8, on every second turn
+  EXPECT_LT(place({40, 40}), 12);  // its 8x8 block is the fifth; every third turn takes another block
   EXPECT_EQ(std::count_if(order.begin(), order.begin() + 8, [](PixelIndex p) { return p.y == 30; }) <= 4, true);
   EXPECT_GE(std::count_if(order.begin(), order.end(), [](PixelIndex p) { return p.y == 30; }), 1);
   EXPECT_EQ(ranked(map, size, 10000).size(), 16u * 16 + 1 + 40);
@@ -142,7 +142,7 @@ TEST(LightError, IsTheJumpWhereAStepIsTouchedAndLessTheSteeperTheFieldCrossesIt)
   const auto error = [&](std::array<double, 4> corners) { return light.per_length(corners); };
   EXPECT_EQ(error({0.1, 0.2, 0.3, 0.4}), 0);
   EXPECT_NEAR(error({0.5, 0.5, 0.5, 0.5}), 2, 1e-9);
-  EXPECT_NEAR(error({0.5, 0.3, 0.2, 0.1}), 0.5, 1e-9);  // a quarter of the corners is on it
+  EXPECT_NEAR(error({0.5, 0.3, 0.2, 0.1}), 0.5, 1e-9);  // a quarter of the corners is on the step
   EXPECT_NEAR(error({0.4, 0.6, 0.4, 0.6}), 2 * noise / 0.2, 1e-7);
   EXPECT_EQ(light.most_per_length(0.1, 0.4), 0);
   EXPECT_EQ(light.most_per_length(0.1, 0.6), 2);
@@ -172,11 +172,12 @@ TEST(EdgeWalk, FindsTheCentresOnAnEdgeAndNoOthers) {
   EXPECT_EQ(tied, 35);
 
   tie = nothing_suspicious();
-  raise_ties({3.5, 3.5, 1}, {23.5, 13.5, 1}, size, edge, tie);  // every second centre along x
+  raise_ties({3.5, 3.5, 1}, {23.5, 13.5, 1}, size, edge, tie);  // a line through every second centre along x
   EXPECT_EQ(std::count_if(tie.begin(), tie.end(), [](float t) { return t > 0.5f; }), 11);
 
   tie = nothing_suspicious();
-  raise_ties({10.5, 5.5, 1}, {10.5, -7, -1}, size, edge, tie);  // behind the eye: from 5.5 down or up
+  // The second vertex is behind the eye: the line goes from 5.5 down or up.
+  raise_ties({10.5, 5.5, 1}, {10.5, -7, -1}, size, edge, tie);
   EXPECT_GT(std::count_if(tie.begin(), tie.end(), [](float t) { return t > 0; }), 0);
   raise_ties({1, 1, -1}, {4, 1, -1}, size, edge, tie);  // behind the eye
 }
@@ -205,7 +206,7 @@ TEST(Verification, ExcusesSuspectsButLimitsExcusesOfRandomPixels) {
   const HalfPlane reference(20.5 + 1.0 / 3000);  // the centres of column 20 see nothing, those of column 21 everything
   scene::Image image(size);
   for (int y = 0; y < size.height; ++y)
-    for (int x = 20; x < size.width; ++x)  // column 20 is on the other side
+    for (int x = 20; x < size.width; ++x)  // column 20 has the other side's colour
       for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * at(x, y) + c] = 0.5f;
   Suspects suspects;
   for (int y = 0; y < size.height; ++y) suspects[static_cast<std::size_t>(Suspicion::tie)].push_back({20, y});
@@ -217,13 +218,13 @@ TEST(Verification, ExcusesSuspectsButLimitsExcusesOfRandomPixels) {
   EXPECT_EQ(found.met(), found.random.excused == 0);
   EXPECT_EQ(found.judgement.max_error_not_excused, 0);
   EXPECT_EQ(found.worst == Suspicion::tie || found.random.excused > 0, true);
-  // All pixels: 48 of 3,072 would be excused, which is too many.
+  // If all pixels are checked, 48 of 3,072 would be excused, which is too many.
   const Verification all = verify(image, reference, 1e-4, pixels, suspects);
   EXPECT_EQ(all.random.pixels, pixels);
   EXPECT_EQ(all.judgement.excused, 48u);
   EXPECT_FALSE(all.met());
 
-  // A column further away is not excused, however it was chosen.
+  // A pixel in a column further away is not excused, however it was chosen.
   for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * at(19, 7) + c] = 0.5f;
   suspects[static_cast<std::size_t>(Suspicion::edge)] = {{19, 7}};
   const Verification wrong = verify(image, reference, 1e-4, 72, suspects);

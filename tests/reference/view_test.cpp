@@ -40,7 +40,8 @@ TEST(View, DecimalNoiseOfPerspectiveIsRoundedAwayAllAroundTheEye) {
       const double side = depth > 0 ? 1 : -1;
       EXPECT_EQ(view.project(p).sight, glm::dvec3(side * x, side * y, side));
     }
-  // In the plane of the eye and all columns, and of all rows.
+  // A point above the eye is in the plane of the eye and in the planes of all columns; a point to its left is in the
+  // planes of all rows.
   EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) + 0.7 * basis.up).sight.x, 0);
   EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) + 0.7 * basis.up).sight.z, 0);
   EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) - 0.3 * basis.right).sight.y, 0);

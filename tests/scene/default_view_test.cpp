@@ -85,7 +85,8 @@ TEST(DefaultView, NamedViewsLookAlongTheirAxes) {
 }
 
 TEST(DefaultView, AzimuthAndElevationTurnAsVtkCamerasDo) {
-  // vtkCamera looking along +y with z up: Azimuth(90) puts the eye at +x, Elevation(30) half as high as it is far away.
+  // For a vtkCamera looking along +y with z up, Azimuth(90) puts the eye at +x, and Elevation(30) raises it to half of
+  // its distance.
   ViewRequest request = named("front");
   request.azimuth = 90;
   expect_near(basis_of(box_of(1, 1, 1), request).forward, {-1, 0, 0});

@@ -15,7 +15,8 @@ namespace budget = error_budget;
 TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
   for (double exponent = -6; exponent <= 0; exponent += 1.0 / 64) {
     const double accuracy = std::max(budget::least_accuracy, std::pow(10, exponent));
-    // A mesh uses the lattice if that is accurate enough, a grid float lanes; double precision always is.
+    // A mesh is rendered on the lattice and a grid in float lanes if that is accurate enough. Double precision always
+    // is.
     EXPECT_LE(budget::mesh_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::grid_in_double(accuracy), accuracy) << accuracy;
     EXPECT_LE(budget::deep(accuracy), accuracy) << accuracy;
@@ -38,7 +39,7 @@ TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
   EXPECT_GT(budget::grid_in_lanes(5e-6), 5e-6);
   EXPECT_TRUE(budget::runs_keep(1e-4));
   EXPECT_FALSE(budget::runs_keep(1e-5));
-  // For brightness 1000 an image's last place exceeds the budget.
+  // For a brightness of 1000, the last place of an image's floats exceeds the budget.
   EXPECT_GT(budget::mesh_on_lattice(1e-4, 1000), 1e-4);
 }
 

@@ -51,7 +51,7 @@ TEST(FillValues, SeveralAreListedHugeOnesFirst) {
 }
 
 TEST(FillValues, ExcludeValuesThatOthersAreNear) {
-  EXPECT_FALSE(found_in({-999, 4000, 0, -500}));                 // separated by half of the range of the others
+  EXPECT_FALSE(found_in({-999, 4000, 0, -500}));                 // separated from the others by half of their range
   EXPECT_FALSE(found_in({-4000, 2, 100}));                       // not a common fill value
   EXPECT_FALSE(found_in({1e20, 3e19, 2e19, 5e18}));              // a quantity of that magnitude
   EXPECT_FALSE(found_in({-9999, -9999, -9999}));                 // no other values

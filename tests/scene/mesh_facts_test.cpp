@@ -89,7 +89,8 @@ TEST(MeshFacts, TheVolumeIsTheSumOfTheTets) {
   }
   const glm::dvec3 s = box.high - box.low;
   const double face = std::max({s.x * s.y, s.y * s.z, s.z * s.x});
-  // p.x is a difference of numbers of size 100: 1e-14 of 2^-12 is 6e-11 of it, and three of these are multiplied.
+  // p.x is a difference of numbers of size 100, with an error of 1e-14. This is 6e-11 of the smallest p.x, 2^-12, and
+  // three factors are multiplied.
   EXPECT_NEAR(mean_thickness(mesh) * face, static_cast<double>(volume), 3e-10 * static_cast<double>(volume));
 }
 

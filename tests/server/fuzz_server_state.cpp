@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       tessera::test::parse_or_refuse(
           [&] { tessera::test::require(State::from_json(state.json()).words() == state.words()); });
       State saved = state;
-      saved.set("save-config", std::vector<std::string>{});  // which a file written by this option leaves out
+      // A file written by this option does not contain the option.
+      saved.set("save-config", std::vector<std::string>{});
       tessera::test::require(State::from_toml(saved.toml()).words() == saved.words());
     });
   }

@@ -47,7 +47,7 @@ TEST(LevelChoice, RequestsAPreviewWhereTheDataTakeTooLong) {
   move(choice, quick, 10);
   EXPECT_TRUE(choice.wants_preview());
   EXPECT_EQ(choice.shrink(), 0u);
-  // At rest, the full data may turn out to be fast enough.
+  // When the camera is at rest, the full data may turn out to be fast enough.
   choice.full_took(slow.at(0));
   EXPECT_TRUE(choice.wants_preview());
   choice.full_took(80);

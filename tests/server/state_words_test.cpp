@@ -40,7 +40,7 @@ TEST(StateWords, OverrideThoseTheServerWasStartedWith) {
   EXPECT_EQ(state_of_words(base), Json::parse(R"({"field":"p","log":true,"view":"front","zoom":"2"})"));
 }
 
-// As a bare option it would take the next one as its text.
+// Without `=`, an option with the text "true" would take the next word as its text.
 TEST(StateWords, KeepTrueGivenAsTextAsText) {
   const Json state = Json::parse(R"({"annotate":["true"],"color-bar-title":"true","field":"true","surface":["true"],
     "transfer-function":"viridis","smooth":true,"scale-bar":true})");

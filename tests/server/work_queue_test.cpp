@@ -49,7 +49,7 @@ TEST(WorkQueue, RendersTheFullThenTheExactImageAndThenRests) {
     EXPECT_EQ(order.level, level);
     queue.begin_sending(order, 5);
     queue.finish(order, sent(level));
-    EXPECT_TRUE(is_idle(queue));  // until the client has painted it
+    EXPECT_TRUE(is_idle(queue));  // until the client has painted the frame
     queue.acknowledge(client, 4);
     EXPECT_TRUE(is_idle(queue));
     queue.acknowledge(client, 5);
@@ -111,7 +111,7 @@ TEST(WorkQueue, WaitsForDataEvenIfItArrivedInTheMeantime) {
   EXPECT_TRUE(is_idle(queue));
   queue.wake();
   order = take_frame(queue);
-  queue.wake();  // before the test knows that the order waits
+  queue.wake();  // before the queue knows that the order waits
   queue.finish(order, {FrameOutcome::Kind::waits_for_data, Level::automatic, 0});
   EXPECT_EQ(take_frame(queue).number, 1u);
 }
@@ -158,7 +158,7 @@ TEST(WorkQueue, StopsTheCurrentTaskWhenItEnds) {
   auto work = queue.next();
   queue.end();
   EXPECT_TRUE(task->stopped);
-  EXPECT_FALSE(task->abandoned);  // in turn, it may answer
+  EXPECT_FALSE(task->abandoned);  // the task still has its turn and may answer
   queue.finish(std::get<std::shared_ptr<Task>>(*work), Task::Turn::again);
   EXPECT_TRUE(task->abandoned);
 }

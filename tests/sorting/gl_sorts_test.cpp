@@ -123,7 +123,7 @@ std::vector<std::uint32_t> texture_order(const gl::Context& context, int limit, 
 
 TEST_P(Arrangements, ATextureSortsListsInItsRowsAndLongerOnesOverSeveral) {
   TESSERA_OSMESA_OR_SKIP(context);
-  for (const int limit : {0, 16}) {  // rows of 128 elements, or parts of 16
+  for (const int limit : {0, 16}) {  // rows of 128 elements without a limit, parts of 16 with it
     std::mt19937 random(6);
     constexpr std::uint32_t stride = 128;
     constexpr int lists = 2;

@@ -27,8 +27,8 @@ std::size_t sort_rows(float* keys, int chunks) {
   return hn::Lanes(DF());
 }
 
-/// Sorts `rows` rows of depths, counts[i] of them in lane i, like windows: places[] are the rows in sorted order, and
-/// level[row] has bits set in lanes where that row's key equals the previous one.
+/// Sorts `rows` rows of depths like windows, with counts[i] depths in lane i. Afterwards, places[] contains the rows in
+/// sorted order, and level[row] has bits set in lanes where that row's key equals the previous one.
 std::size_t pack_and_sort(std::int32_t* depths, const std::int32_t* counts, std::int32_t* places, std::int32_t* level,
                           std::size_t rows) {
   const DI d;
@@ -152,7 +152,7 @@ TEST(PackedKeys, OrderDepthsOrReportThatTheyDoNot) {
           std::vector<bool> seen(rows);
           for (std::size_t row = 0; row < rows; ++row) {
             const auto place = static_cast<std::size_t>(places[row * lanes + lane]);
-            ASSERT_LT(place, rows);  // readable positions, also after the end
+            ASSERT_LT(place, rows);  // the positions are readable, also after the end
             if (row >= count) continue;
             ASSERT_LT(place, count);
             ASSERT_FALSE(seen[place]);
@@ -163,7 +163,7 @@ TEST(PackedKeys, OrderDepthsOrReportThatTheyDoNot) {
             const std::int32_t here = depths[place * lanes + lane];
             const bool is_level = level[row * lanes + lane] != 0;
             ASSERT_TRUE(before < here || is_level) << before << " " << here;
-            // Up to 2^20 apart nothing is dropped: only equal depths are level.
+            // If depths are at most 2^20 apart, no bits are dropped, and only equal depths have equal keys.
             if (std::int64_t{high} - low < 1 << 20) {
               ASSERT_EQ(is_level, before == here);
             }

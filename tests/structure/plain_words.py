@@ -63,7 +63,6 @@ NOT_IN_MARKDOWN = {"image, frame", "directory"}
 
 # (pattern, reason) of legitimate uses, removed from the text before the table is applied. Each must occur.
 EXCEPTIONS = [
-    (r"\bthe last of which\b", "a part of what precedes it, like none of which"),
     (r"\b(scientists|developers|anyone|everyone) who\b", "people"),
     (r"\bframe_ms and picture\b", "keys of a JSON file"),
     (r"\b(eye|opaque) beside\b", "names of scenes in docs/RESULTS.md, from bench/stability/scenes.py"),

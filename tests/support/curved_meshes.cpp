@@ -132,7 +132,7 @@ cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Fie
         }
         break;
       case cells::CurvedFamily::pyramid:
-        for (int side = 0; side < 6; ++side)  // base on a side of the cube, apex in its middle
+        for (int side = 0; side < 6; ++side)  // the base is on a side of the cube, the apex in the cube's middle
           add([=](const glm::dvec3& x) {
             const double u = x.x + x.z / 2, v = x.y + x.z / 2, w = x.z / 2;
             const glm::dvec3 y = side < 3 ? glm::dvec3(u, v, w) : glm::dvec3(v, u, 1 - w);

@@ -16,8 +16,8 @@ namespace tessera::io::testing {
 /// The complete polynomials in (r, s, t) of its functions.
 enum class CellSpace : std::uint8_t { linear, quadratic_in_r_s, quadratic };
 
-/// One type of cell. Its corners go around the base and then around the top; they are followed by nodes in the middles
-/// of the corners in a list, numbered from 1 as in manuals.
+/// One type of cell. Its corners go around the base and then around the top. The other nodes follow: each is in the
+/// middle of the corners in an element of `middles` (numbered from 1 as in manuals).
 struct ReferenceCell {
   std::string name;
   cells::CurvedFamily shape;
@@ -36,8 +36,9 @@ struct BentCell {
 /// base in the other direction.
 BentCell bend(const ReferenceCell& cell, bool mirrored = false);
 
-/// Lists of corners for third-order nodes: a third of the distance from the first corner to the second; nearest to the
-/// first corner inside a quadrilateral, whose corners are in order around it; nearest to a corner inside a hexahedron.
+/// Lists of corners whose mean is the place of a third-order node. The node is at a third of the distance from the
+/// first corner to the second; inside a quadrilateral (with corners in order around it), nearest to the first corner;
+/// or inside a hexahedron, nearest to a corner.
 std::vector<int> a_third(int from, int to);
 std::vector<int> near_first(const std::array<int, 4>& quadrilateral);
 std::vector<int> near_corner_of_hexahedron(int corner);

@@ -62,7 +62,7 @@ inline void write_foam(const std::filesystem::path& folder, const Cubes& cubes, 
       const std::size_t axis = side % 3;
       const bool inside = side < 3 ? at[axis] + 1 < n : at[axis] > 0;
       const int other = inside ? local[static_cast<std::size_t>(c + steps[side])] : -1;
-      if (side >= 3 && other >= 0) continue;  // belongs to the other cell
+      if (side >= 3 && other >= 0) continue;  // the face belongs to the other cell
       Face face{local[static_cast<std::size_t>(c)], other, {}};
       for (std::size_t k = 0; k < 4; ++k)
         face.corners[k] = cubes.cells[static_cast<std::size_t>(c)][static_cast<std::size_t>(sides[side][k])];

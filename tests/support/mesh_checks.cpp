@@ -55,7 +55,7 @@ Corners renumbered(Corners c, std::mt19937& random) {
 }  // namespace
 
 std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh& mesh) {
-  // Numbers of positions, sorted: a map of triangles is several times slower.
+  // Positions are sorted and numbered, because a map with triangles as keys is several times slower.
   std::vector<Point> places;
   for (const glm::dvec3& p : mesh.positions) places.push_back({p.x, p.y, p.z});
   std::sort(places.begin(), places.end());
@@ -142,7 +142,7 @@ cells::CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
     for (std::uint32_t j = 0; j < side; ++j)
       for (std::uint32_t i = 0; i < side; ++i) {
         glm::dvec3 p(i, j, k);
-        for (int a = 0; a < 3; ++a)  // the box stays a box
+        for (int a = 0; a < 3; ++a)  // points on the sides of the box stay on them
           if (p[a] > 0 && p[a] < n) p[a] += jitter(random);
         points.push_back(p / static_cast<double>(n));
       }

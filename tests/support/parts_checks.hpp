@@ -14,7 +14,7 @@
 #include "io/mesh/mesh_parts.hpp"
 #include "support/read_files.hpp"
 
-/// Compares meshes read in parts with the same ones read whole.
+/// Compares meshes that are read in parts with the same meshes read at once.
 namespace tessera::io::testing {
 
 /// Positions and scalars of the tets in order, as bits.

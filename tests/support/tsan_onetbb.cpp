@@ -84,8 +84,8 @@ class Spawned final : public task {
   task& inner_;
 };
 
-/// Everything done by tasks, each of which decremented the context's count, precedes what their waiter does next; also
-/// if one of their exceptions is rethrown.
+/// Tasks decrement the context's count when they end. Everything that they did before precedes what their waiter does
+/// next, also if one of their exceptions is rethrown.
 class AfterWait {
  public:
   explicit AfterWait(wait_context& context) : context_(context) {}

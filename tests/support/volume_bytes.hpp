@@ -29,8 +29,8 @@ std::vector<T> counting(std::size_t count) {
   return values;
 }
 
-/// A NIfTI-1 header of 4 x 3 x 2 int16 samples with spacing 1, 2, 3 and neither form set; with its 4 bytes for no
-/// extension.
+/// A NIfTI-1 header of 4 x 3 x 2 int16 samples with spacing 1, 2, 3, without qform and sform. It includes the 4 bytes
+/// that state that there is no extension.
 inline std::string nifti_header() {
   std::string h(352, '\0');
   put<std::int32_t>(h, 0, 348);

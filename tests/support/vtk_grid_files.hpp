@@ -31,7 +31,7 @@ struct VtkCase {
   std::string type = "UInt16";
   int components = 1;
   bool of_cells = false;
-  bool split_text = false;  ///< base64: the texts of the number and of the bytes have separate padding
+  bool split_text = false;  ///< base64: the number of bytes and the bytes are separate texts with separate padding
   std::optional<AxesCase> axes{};
 };
 

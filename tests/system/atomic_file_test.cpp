@@ -85,7 +85,7 @@ TEST(AtomicFile, IsRemovedByItsTemporaryNameWhenOutputsAreAbandoned) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"c"});
 }
 
-// For a rank that its launcher kills.
+// The case of a rank that its launcher kills.
 TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
   const TemporaryFolder folder;
   const pid_t child = fork();

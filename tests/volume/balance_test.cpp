@@ -96,8 +96,8 @@ TEST(Balance, VisitedCostIsTheLengthOfEachRayInTheCells) {
       for (const int a : {1, 2}) visible[static_cast<std::size_t>(a + 4 * (b + 4 * c))] = 1;
   visible[1 + 4 * 1] = 1;
   const CostMap map = cost_map(camera, {32, 32}, geometry, {{4, 4, 4}, visible}, {}, {CostMethod::visited, 1, true});
-  // Along z, one pixel a voxel: 16 voxels behind the first box, 8 more behind the second, whose y is low: the image's
-  // lower part. Pixels within two of a cell are in a packet that may meet it.
+  // Rays go along z, with one pixel per voxel. They cross 16 voxels of the first box and 8 of the second, which is at
+  // low y, in the image's lower part. Pixels within two pixels of a cell are in a packet that may meet it.
   const auto covers = [](int v, int low, int high) { return v >= low - 2 && v < high + 2; };
   const auto sure = [](int v) { return v % 8 >= 2 && v % 8 < 6; };
   for (int y = 0; y < 32; ++y)
@@ -160,7 +160,7 @@ TEST(Balance, SplitsTileThePictureInProportionToTheWeights) {
       for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x)
           mine += map.cost[static_cast<std::size_t>(y / 2) * 60 + static_cast<std::size_t>(x / 2)] / 4.0;
-      // Split lines are between whole pixels: half a line on each side.
+      // Split lines are between whole pixels, so each side may be off by half a line.
       EXPECT_NEAR(mine / total, weights[static_cast<std::size_t>(p)] / all, 0.02) << p << " of " << processes;
     }
   }
@@ -199,7 +199,7 @@ TEST(Balance, CellsThatNoRayMetTakeCostsOfTheirNeighbours) {
   const scene::GridIndex voxels{64, 64, 64};
   WorkTally tally(voxels);
   ASSERT_EQ(tally.cells().count(), 512u);
-  // Two samples per slab in the low half along i, none in the other; one cell is left out.
+  // Cells have two samples per slab in the low half along i, and zero in the other half. One cell is left out.
   const std::size_t unseen = tally.cells().number(20, 30, 30);
   for (std::int64_t k = 0; k < 64; k += 8)
     for (std::int64_t j = 0; j < 64; j += 8)
@@ -241,7 +241,8 @@ TEST(Balance, MapsOfQuarterResolutionGiveProcessesTheSameWork) {
     even += deviation(work_of(full, even_split(6, image, footprint(camera, image, source->geometry()))));
   }
   const auto frames = static_cast<double>(cameras.size());
-  // A line of 256 pixels is a percent of a sixth of the image's work, and each side has one of its own.
+  // A line of 256 pixels is a percent of the work of one of six processes, and each side of a rectangle may be off by a
+  // line.
   EXPECT_LE(visited / frames, 0.05);
   EXPECT_LT(accurate, even / 2);
   EXPECT_LT(backface, even / 2);

@@ -152,7 +152,7 @@ TEST(VolumeCaster, IndependentEmission) {
 
 TEST(VolumeCaster, VerySmallDoublesLookLikeOthers) {
   const Volume v = make_volume({21, 18, 17}, Field::noise);
-  // All are normal numbers: powers of two, so that no sample and no knot is rounded.
+  // All numbers are normal, and scales are powers of two, so that no sample and no knot is rounded.
   const auto picture = [&](double scale) {
     std::vector<double> values;
     for (const float value : v.values) values.push_back(std::max(static_cast<double>(value), 0x1p-12) * scale);
@@ -278,7 +278,8 @@ std::vector<double> errors_of(IntegratorKind method, const Volume& v, const scen
 TEST(VolumeCaster, SampledConvergesWithTheSquareOfTheStep) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
   const auto e = errors_of(IntegratorKind::sampled, v, smooth_function(), {1, 0.5, 0.25, 0.125});
-  // Second order if a step crosses neither knot nor voxel face; steps that do vary it slightly.
+  // Convergence is of second order if a step crosses neither a knot nor a voxel face. Other steps vary the ratio
+  // slightly.
   for (std::size_t n = 1; n < e.size(); ++n) EXPECT_GT(e[n - 1] / e[n], 3) << e[n];
   EXPECT_LT(e.back(), 1e-4);
 }
@@ -307,7 +308,8 @@ TEST(VolumeCaster, SteppingHasTheSameBitsForAnyBricksThreadsAndCache) {
 }
 
 TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
-  // One normal everywhere: a shaded pixel is its unshaded one times a factor, plus white in proportion to its opacity.
+  // There is one normal everywhere. So a shaded pixel is the unshaded pixel times a factor, plus white in proportion to
+  // its opacity.
   Volume v = make_volume({17, 14, 12}, Field::smooth);
   const glm::dvec3 gradient{0.21, 0.33, -0.17};
   const scene::GridIndex n = v.grid.geometry.samples();
@@ -346,7 +348,8 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
                              std::abs(shaded.rgba[at + c] - (own * plain.rgba[at + c] + white * plain.rgba[at + 3])));
           worst = std::max(worst, double(std::abs(shaded.rgba[at + 3] - plain.rgba[at + 3])));
         }
-      // Gradients of samples rounded to float, one voxel apart, have a relative error of 1e-6; the power makes it 1e-5.
+      // Gradients of samples that are rounded to float, one voxel apart, have a relative error of 1e-6. The power of
+      // the highlight makes it 1e-5.
       EXPECT_LT(worst, 3e-5) << name << ' ' << camera_light;
     }
 }

@@ -38,7 +38,7 @@ class Composite final : public volume::FragmentSink {
       const float through = 1 - rgba[3], own[4] = {f.red, f.green, f.blue, f.alpha};
       for (int c = 0; c < 4; ++c) rgba[c] += through * own[c];
       if (rgba[3] > 0 && std::isinf(image.depth[pixel])) image.depth[pixel] = f.z_front;
-      // Depths are floats of 3 to 7.
+      // Depths are floats between 3 and 7, so 1e-5 allows for their rounding.
       if (f.z_front < back[pixel] - 1e-5f || f.z_back < back[pixel] - 1e-5f) in_order = false;
       back[pixel] = f.z_back;
       ++count;
@@ -171,8 +171,8 @@ TEST(ChunkCast, PreintegrationGoesOnFromTheRaysState) {
   };
   for (const char* name : {"oblique", "from y", "perspective"}) {
     check(name, smooth_function(), 1e-6);
-    // Positions of steps are floats, relative to the first one in the chunk: 1e-6 voxel. Peaks are a fiftieth of the
-    // range wide.
+    // Positions of steps are floats relative to the first step in the chunk, with an error of 1e-6 voxel. Peaks are a
+    // fiftieth of the range wide.
     check(name, sharp_function(), 1e-5);
   }
 }
@@ -220,7 +220,7 @@ TEST(ChunkCast, UncertainRaysAreCastAgainWithinTheirChunk) {
     cast.emit(sink);
   }
   EXPECT_GT(cast.counters().pixels_again, 0u);
-  // Either image may have the method's error of 1e-5: different rays are uncertain.
+  // Each of the two images may have the method's error of 1e-5, because their uncertain rays differ.
   EXPECT_LT(difference(sink.image, whole), 2e-5);
 }
 
@@ -286,7 +286,7 @@ TEST(ChunkCast, ClosedRaysDoNoMoreWorkAndKeepWhatTheyHave) {
         if (x < size.width / 2) {
           EXPECT_EQ(image.rgba[n + c], first.rgba[n + c]) << x << ' ' << y;
         } else if (x >= size.width / 2 + 4) {
-          // Lanes whose packet has been left by other lanes compute the same light in different pieces.
+          // If other lanes have left a packet, the remaining lanes compute the same light in different pieces.
           EXPECT_NEAR(image.rgba[n + c], all.rgba[n + c], 1e-6) << x << ' ' << y;
         }
         differs = differs || first.rgba[n + c] != all.rgba[n + c];
@@ -315,7 +315,7 @@ TEST(ChunkCast, RaysEndEarlyInWhateverChunks) {
   endless.use.termination = false;
   volume::RenderStatistics to_the_end;
   render(v, camera, opaque, endless, &to_the_end);
-  ASSERT_LT(3 * in_one.samples, to_the_end.samples);  // 3.5 with AVX2, above 4 with AVX-512
+  ASSERT_LT(3 * in_one.samples, to_the_end.samples);  // the ratio is 3.5 with AVX2, above 4 with AVX-512
   for (const bool emit_each : {false, true}) {
     volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
     ChunkCast cast(renderer, camera, size, opaque);
@@ -331,11 +331,11 @@ TEST(ChunkCast, RaysEndEarlyInWhateverChunks) {
             if (!cast.open(x, y)) cast.close(x, y);
       }
     }
-    // The rays that graze the volume's far edges are the last ones.
+    // Only central rays are checked: the rays that graze the volume's far edges end last.
     for (int y = size.height / 2 - 9; y < size.height / 2 + 9; ++y)
       for (int x = size.width / 2 - 9; x < size.width / 2 + 9; ++x) EXPECT_FALSE(cast.open(x, y));
-    // There are more pieces, because they end at chunks' planes; a ray that continued to its end would have four times
-    // as many.
+    // Pieces also end at the planes of chunks, so there are more of them. A ray that continued to its end would have
+    // four times as many.
     EXPECT_LT(static_cast<double>(cast.counters().samples), 1.6 * static_cast<double>(in_one.samples)) << emit_each;
   }
 }

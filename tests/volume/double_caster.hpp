@@ -108,7 +108,7 @@ struct DoubleCaster {
   void stretch(const Field& field, double from, double to, double length_per_depth, double& optical_depth,
                Pixel& pixel) const {
     std::vector<double> cuts{from};
-    // Between extrema, found by ternary search in parts that are not monotone, a knot is crossed at most once.
+    // Extrema are found by ternary search in parts that are not monotone. Between them, a knot is crossed at most once.
     constexpr int parts = 32;
     std::vector<double> marks{from};
     for (int n = 0; n < parts; ++n) {

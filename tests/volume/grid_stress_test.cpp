@@ -57,7 +57,7 @@ std::vector<scene::Camera> views_of(const scene::SampleSource& source) {
   return {outside, near, inside};
 }
 
-/// Over a coarse lattice of pixels; excused pixels do not count.
+/// Largest error over a coarse lattice of pixels, without excused pixels.
 double error_of(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
                 volume::RenderSettings settings, double bound) {
   settings.threads = 2;

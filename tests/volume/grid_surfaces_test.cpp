@@ -86,7 +86,7 @@ TEST(GridSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue
     EXPECT_NEAR(image.rgba[4 * middle + 1], 0.4 * (0.25 * matte + shine), 1e-6);
     EXPECT_NEAR(image.rgba[4 * middle + 2], 0.4 * shine, 1e-6);
     EXPECT_NEAR(image.rgba[4 * middle + 3], 0.4, 1e-6);
-    // That pixel's centre is half a pixel (1.5 / 24) up and right of the axis; up is not along z.
+    // The centre of the middle pixel is half a pixel (1.5 / 24) to the right of and above the axis; up is not along z.
     const glm::dvec3 forward = glm::normalize(glm::dvec3(-2, 0, -4)), right = glm::cross(forward, {0, 1, 0});
     const glm::dvec3 start = glm::dvec3(2, 0, 4) + (right - glm::cross(right, forward)) * (1.5 / 24);
     EXPECT_NEAR(image.depth[middle], (2 * value - 1 - start.z) / forward.z, 1e-6);
@@ -104,7 +104,7 @@ TEST(GridSurface, IsBetweenTheDataInFrontAndBehind) {
       const auto image =
           volume::Renderer(*source, exact_with(surfaces)).render(from({0, 0, 4 * side}), small, grey_fog()).image;
       const std::size_t middle = 4 * image.index(4, 4);
-      const double through = std::exp(-0.7), fog = 1 - through;  // one unit of it on either side, half of it grey
+      const double through = std::exp(-0.7), fog = 1 - through;  // for one unit of fog on either side; half is grey
       const double behind = through * (1 - opacity);
       EXPECT_NEAR(image.rgba[middle], 0.5 * fog + through * opacity + behind * 0.5 * fog, 2e-6);
       EXPECT_NEAR(image.rgba[middle + 1], 0.5 * fog + behind * 0.5 * fog, 2e-6);
@@ -112,9 +112,10 @@ TEST(GridSurface, IsBetweenTheDataInFrontAndBehind) {
     }
 }
 
-/// Rays in planes of the lattice and between them; a value of whole layers of samples, and of all samples of some.
+/// Rays in planes of the lattice and between them. The surface's value is that of one layer of samples, or of several
+/// adjacent layers.
 TEST(GridSurface, AtTheValueOfSamplesIsHitOnce) {
-  const scene::ImageSize small{33, 33};  // pixels of 1 / 11: centres in lattice planes, and not
+  const scene::ImageSize small{33, 33};  // pixels of 1 / 11: some centres are in lattice planes
   Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1), 0.5}};
   surfaces.light = {1, 0, 0, 1};
@@ -169,7 +170,8 @@ TEST(GridSurface, FewRaysThatMeetThemAreCastAgainInDoublePrecision) {
   }
 }
 
-/// Integers, many of which equal a surface's value: sides of voxels, edges and whole voxels have it.
+/// Samples are integers, and many equal a surface's value. So the field has this value on sides, edges and whole
+/// voxels.
 TEST(GridSurface, OfWholeNumbersAreFoundInLanesWhereSidesOfVoxelsHaveTheirValue) {
   scene::Grid grid;
   grid.geometry.points = {33, 29, 31};
@@ -289,7 +291,8 @@ Case random_case(unsigned number) {
   scene::Grid grid;
   grid.geometry = random_geometry(random);
   const scene::GridIndex n = grid.geometry.samples();
-  const int steps = random.chance(0.4) ? 1 + random.below(4) : 0;  // few values: constant edges, sides and voxels
+  // Few values, so that edges, sides and voxels are constant.
+  const int steps = random.chance(0.4) ? 1 + random.below(4) : 0;
   const bool blanks = random.chance(0.2), smooth = random.chance(0.4);
   std::vector<float> values;
   const glm::dvec3 wave = random.uniform(0.2, 1.5) * random.direction();

@@ -118,8 +118,8 @@ TEST(VolumeKernels, SamplesOfEveryType) {
 }
 
 TEST(VolumeKernels, Steps) {
-  // The method's error is far larger than that of lanes; at a tenth of a voxel it is below 2e-3, which would detect a
-  // wrong step.
+  // The method's error is far larger than that of lanes. With steps of a tenth of a voxel it is below 2e-3, which would
+  // detect a wrong step.
   const Volume v = make_volume({37, 30, 36}, Field::smooth), cells = make_volume({19, 17, 20}, Field::noise, true);
   volume::RenderSettings sampled = by(IntegratorKind::sampled), table = by(IntegratorKind::preintegrated);
   sampled.grid.step = table.grid.step = 0.1;

@@ -158,7 +158,7 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
     const volume::Frame with = ahead.render(turned(frame), size, smooth_function()),
                         without = by_need.render(turned(frame), size, smooth_function());
     EXPECT_TRUE(same_bits(with.image, without.image)) << frame;
-    // The limit applies to a frame; bricks planned for the previous one may have been in flight.
+    // The limit applies to each frame, but bricks planned for the previous frame may have still been loading.
     EXPECT_LE(with.statistics.bricks_preloaded, 2u * 60 + 1);
     if (++frame <= 2) return false;
     loads += with.statistics.bricks_loaded, loads_ahead += with.statistics.bricks_preloaded;

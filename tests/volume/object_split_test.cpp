@@ -79,7 +79,7 @@ TEST(ObjectSplit, SharesTheCellsThatShow) {
       double shown = 1;
       for (std::size_t n = 0; n < 3; ++n)
         shown *= static_cast<double>(std::max<std::int64_t>(0, std::min<std::int64_t>(128, box.high[n]) - box.low[n]));
-      // A plane of bricks is an eighth of what is to be halved, or cut in three.
+      // A plane of bricks is an eighth of the part that is halved or cut in three.
       EXPECT_NEAR(shown * processes / (128.0 * 128 * 128), 1, 0.4) << processes;
     }
   }

@@ -30,7 +30,7 @@ scene::Grid grid_of(std::int64_t n, scene::Association association = scene::Asso
   return grid;
 }
 
-/// value(x, y, z) over [-1, 1]^3.
+/// A volume with the samples value(x, y, z) over [-1, 1]^3.
 template <class T, class Value>
 std::unique_ptr<scene::MemorySource> volume_of(const scene::Grid& grid, const Value& value) {
   const scene::GridIndex n = grid.geometry.samples();
@@ -76,8 +76,8 @@ void expect_right(const scene::SampleSource& source, const std::vector<scene::Kn
   }
 }
 
-/// Two slabs at once form a line only where both have a field; a maximum that drops NaN once treated whole packets as
-/// one.
+/// Two slabs at once form a line only where both have a field. A maximum that drops NaN once treated whole packets as
+/// one line.
 TEST(PlateauGrid, BlankSamplesHideNothingButTheirOwnVoxels) {
   const auto ball = volume_of<float>(grid_of(48), [](double x, double y, double z) {
     const double r = std::sqrt(x * x + y * y + z * z);
@@ -205,7 +205,8 @@ TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
       EXPECT_LE(judgement.max_error, 1e-5) << judgement.worst_x << ' ' << judgement.worst_y;
       for (int y = 0; y < size.height; y += 3)
         for (int x = 0; x < size.width; x += 3) {
-          // Both integrate the same numbers; only the grid's own coordinates are rounded, in the same way.
+          // Both references integrate the same numbers. Only the coordinates of their grids are rounded, in the same
+          // way.
           const auto one = near_truth.pixel(x + 0.5, y + 0.5), other = truth.pixel(x + 0.5, y + 0.5);
           EXPECT_NEAR(one.a, other.a, 1e-11) << x << ' ' << y;
           EXPECT_NEAR(one.r, other.r, 1e-11) << x << ' ' << y;
@@ -257,8 +258,8 @@ TEST(PlateauGrid, StepsOfColourAloneAreSteps) {
                {46, 35}, "colours");
 }
 
-/// Where a field of doubles crosses a step from which it differs by only last places: lanes leave such rays to double
-/// precision, and doubles keep the position only as differences to the step.
+/// A field of doubles crosses a step and differs from the step's value only in last places. Float lanes leave such rays
+/// to double precision, and doubles keep the crossing's position only as a difference from the step.
 TEST(PlateauGrid, CrossingsOnAFrayedPlateauKeepTheirPlaces) {
   const double step = 0.21390244162149247, place = 0x1p-55;
   const scene::ImageSize size{40, 32};
@@ -333,8 +334,8 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
           }
 }
 
-/// Lighting depends on the direction of the gradient, however small it is: differences of values that floats cannot
-/// represent.
+/// Lighting depends on the direction of the gradient, however small the gradient is. It is computed from differences of
+/// values that floats cannot represent.
 void expect_lit_right(const scene::SampleSource& source, const std::string& what) {
   const scene::TransferFunction grey({{0, {0.6, 0.2, 0.4}, 1}, {1, {0.6, 0.2, 0.4}, 1}});
   const scene::ImageSize size{24, 24};

@@ -171,7 +171,7 @@ TEST(Rectilinear, CostIsWhereVoxelsAre) {
       renderer.cost_map(view(false, {0, 0, 5}), size, steep(), {volume::CostMethod::visited, 0.5});
   const auto at = [&](int x, int y) { return map.cost[static_cast<std::size_t>(y * map.size.width + x)]; };
   EXPECT_EQ(at(0, 0), 0u);
-  EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // all planes of z except the first
+  EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // a ray crosses all planes of z except the first
 }
 
 }  // namespace

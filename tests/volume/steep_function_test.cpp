@@ -40,7 +40,7 @@ Field noise() {
   };
 }
 
-/// From `direction` times `away`, in voxels, looking at the volume's middle.
+/// A camera that looks at the volume's middle from `direction` times `away` (in voxels).
 scene::Camera camera_of(const scene::SampleSource& source, double away,
                         const glm::dvec3& direction = glm::dvec3(1, 0.7, 1.9)) {
   const scene::Box box = scene::bounds(source.geometry());
@@ -56,7 +56,7 @@ struct Outcome {
   std::uint64_t in_double;  ///< pixels
 };
 
-/// The worst of `exact` and `auto` to 1e-5 and 1e-4; no pixel is excused.
+/// The worst outcome of `exact`, and of `auto` with accuracies of 1e-5 and 1e-4; no pixel is excused.
 Outcome outcome_of(const scene::SampleSource& source, const scene::Camera& camera,
                    const scene::TransferFunction& function, scene::Emission emission = scene::Emission::absorption) {
   const reference::GridReference truth(source, camera, size, function, emission);
@@ -118,7 +118,7 @@ TEST(SteepFunction, RaysThatBeginInDenseMatterBeginWhereTheyDo) {
   }
 }
 
-/// What a peak's front hides of its back: steps and ramps crossed in one voxel, the last of which is dark.
+/// A ray crosses steps and ramps in one voxel, the last of them dark: the front of a peak hides errors of its back.
 TEST(SteepFunction, ErrorsInFrontOfDenseMatterAreSeen) {
   const auto source = volume_of({8, 8, 8}, noise());
   for (const double extinction : {50.0, 2e3, 1e5}) {
@@ -135,7 +135,7 @@ TEST(SteepFunction, ErrorsInFrontOfDenseMatterAreSeen) {
   }
 }
 
-/// A ray that cuts a corner of a dense voxel has a length there that is the difference of two rounded positions.
+/// The length of a ray that cuts a corner of a dense voxel is the difference of two rounded positions.
 TEST(SteepFunction, CornersOfDenseCellsAreAsLongAsTheyAre) {
   const auto source = volume_of({12, 33, 11}, noise(), scene::Association::cell);
   scene::Camera camera = camera_of(*source, 20, glm::dvec3(0.31, -1.9, 0.43));

@@ -51,7 +51,7 @@ TEST(TileCosts, ReportedCostsAreTheMeasuredTimes) {
   double all = 0;
   for (const auto& [pixels, microseconds] : times) {
     all += 1e3 * static_cast<double>(microseconds);
-    // Floats of about a hundred squares are summed.
+    // The sum has about a hundred squares, each in float.
     EXPECT_NEAR(costs.of(pixels), 1e3 * static_cast<double>(microseconds), 1e-4 * 5e6);
   }
   EXPECT_NEAR(costs.of({0, 0, size.width, size.height}), all, 1e-5 * all);
@@ -81,7 +81,7 @@ TEST(TileCosts, FollowThePicturesOfThePlaneThroughTheMiddle) {
   const scene::PixelRect there{160, 96, 288, 224};
   const double before = costs.of(there);
 
-  // 384 pixels are 4 units high: 64 pixels to the right move the image to the left.
+  // 384 pixels are 4 units high. If the camera moves 64 pixels to the right, the image moves to the left.
   TileCosts panned = costs;
   scene::Camera camera = straight();
   camera.position.x += 64 * 4.0 / 384, camera.focal_point.x = camera.position.x;
@@ -143,8 +143,8 @@ TEST(BalancedSplit, SharesWorkIncludingOtherWorkOfProcesses) {
     expect_whole(split, size, processes);
     const std::vector<double> loads = loads_of(split, costs, beside);
     const double mean = std::accumulate(loads.begin(), loads.end(), 0.0) / processes;
-    // A row's edge is on every fourth line of pixels. Four lines have up to 2.5 % of the hill, or 30 % of one of twelve
-    // shares, and four processes share them.
+    // The edge of a row is on every fourth line of pixels. Four lines have up to 2.5 % of the hill's cost, which is
+    // 30 % of the share of one of twelve processes. Four processes share this error.
     EXPECT_LT(*std::max_element(loads.begin(), loads.end()), 1.075 * mean) << processes;
     EXPECT_GT(*std::min_element(loads.begin(), loads.end()), 0.9 * mean) << processes;
   }

@@ -14,8 +14,8 @@
 namespace tessera::volume {
 namespace {
 
-/// Returns the size, in voxels, of the blocks that are read at once: a multiple of cells of about 64^3 voxels, or whole
-/// rows if the source is stored slice by slice.
+/// Returns the size, in voxels, of the blocks that are read at once. A block consists of whole cells and has about 64^3
+/// voxels; if the source is stored slice by slice, it has whole rows.
 scene::GridIndex scan_block_size(const scene::SampleSource& source) {
   constexpr std::int64_t cell = CellRanges::side, cube = 64, most = cube * cube * cube;
   if (source.storage_block()[2] > 1) return {cube, cube, cube};
@@ -195,7 +195,8 @@ namespace {
 std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const std::vector<float>& high,
                                             bool whole_numbers, const integrals::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
-  // Rounding may have exchanged the order of values and steps, or of knots: by two last places of a float and a unit.
+  // Rounding may move values and knots by two last places of a float and a unit. This may exchange the order of a value
+  // and a step, or of two knots.
   const auto uncertain = [&](std::size_t edge) {
     return table.is_moved[edge] != 0 || (table.has_steps && !whole_numbers);
   };

@@ -59,8 +59,8 @@ void LookAhead::begin(const scene::Camera& camera, scene::ImageSize size, const 
   std::vector<float> distances = outside_now_;
   if (limit_ > 0) {
     outside_next_ = frustum_distances(last_ ? next_view(*last_, camera) : camera, size, tiles, geometry, layout);
-    // Bricks of the next view are kept, too, but are evicted before any bricks that the current view may need (0 or
-    // less).
+    // Bricks of the next view are kept, too, but are evicted before any bricks that the current view may need (whose
+    // distance is 0 or less).
     constexpr float after_all_now = std::numeric_limits<float>::min();
     for (std::size_t brick = 0; brick < distances.size(); ++brick)
       distances[brick] = std::min(distances[brick], std::max(after_all_now, outside_next_[brick]));

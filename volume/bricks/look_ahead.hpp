@@ -60,7 +60,7 @@ class LookAhead {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Planned> planned_;
-  int left_ = 0;  ///< how many bricks of the frame's limit remain
+  int left_ = 0;  ///< how many bricks may still be loaded in this frame
   bool ended_ = false;
   std::thread thread_;
 };

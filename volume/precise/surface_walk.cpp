@@ -13,7 +13,7 @@
 namespace tessera::volume {
 namespace {
 
-constexpr double on_level = 1e-10;  // in a clip plane; relative to a voxel's largest value
+constexpr double on_level = 1e-10;  // tolerance in a clip plane, relative to a voxel's largest value
 
 constexpr double rounding = 1e-14;  // upper bound of the error of field_at() relative to the largest value
 

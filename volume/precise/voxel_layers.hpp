@@ -31,7 +31,7 @@ struct VoxelLayersSettings {
 /// opaque matter until its last layer is opaque, too, or until the ray ends.
 class VoxelLayers final : public WalkSink {
  public:
-  /// Source, function and surfaces must outlive it.
+  /// Source, function and surfaces must outlive this object.
   VoxelLayers(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
               const VoxelLayersSettings& settings);
 

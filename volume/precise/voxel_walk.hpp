@@ -33,8 +33,8 @@ class WalkSink {
   /// Called for a stretch between planar depths z0 and z1 on which the scalar is linear and within one interval of the
   /// transfer function. k_0 and k_1 are the scalars at its ends, expressed as knot numbers: number n + t is at the
   /// fraction t in [0, 1] between knots n = 0, 1, ... and n + 1. The function is constant below 0 and from the last
-  /// number on. Knot numbers keep the position of scalars between knots whose distance is much smaller than their
-  /// values. over_knot_numbers() is the function of knot numbers.
+  /// number on. Knot numbers keep the position of a scalar between two knots even if the knots differ only in their
+  /// last places. over_knot_numbers() is the transfer function as a function of knot numbers.
   virtual void line(double z0, double z1, double k_0, double k_1) = 0;
   /// Upper bound of the transmittance so far; the walk ends if it is below `least`.
   [[nodiscard]] virtual double transmittance() const = 0;

@@ -18,7 +18,7 @@ inline namespace v0_1 {
 /// A range of time steps, counted from 0. Both ends are included.
 struct StepRange {
   std::size_t first = 0;
-  std::optional<std::size_t> last{};  ///< none: the last one in the input
+  std::optional<std::size_t> last{};  ///< none: the last step of the input
   std::size_t stride = 1;             ///< at least 1
 };
 
@@ -28,8 +28,8 @@ struct FilmPlan {
                                               ///< time step
   bool grids = false;                         ///< whether the inputs are grids
   std::vector<TimeStep> series{};  ///< the steps of the only input, if it is a time series (read_time_series())
-  /// The steps of a time series or of the list of inputs or, for a single file, the steps in that file (`file_steps` is
-  /// their number). None: all steps of a series or, for a single file, the step of ReadOptions::time_step.
+  /// The steps to render: steps of a time series, inputs of a list, or steps in a single file (`file_steps` is their
+  /// number). None: all steps of a series or list; for a single file, the step of ReadOptions::time_step.
   std::optional<StepRange> steps{};
   std::size_t file_steps = 1;
   std::vector<double> file_times{};  ///< times of the file's steps (Dataset::times()); empty: the numbers of the steps

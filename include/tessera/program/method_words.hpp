@@ -10,8 +10,8 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Return a name like `auto` or `exact`, as in --integrator without the part after a colon, or a name like `runs`, as
-/// in --exchange.
+/// method_word() returns the word of --integrator without the part after a colon, like `auto` or `exact`.
+/// exchange_word() returns the word of --exchange, like `runs`.
 const char* method_word(IntegratorKind kind);
 const char* exchange_word(Exchange exchange);
 /// Describes an integrator for meshes: `sampled:8`, `auto to 0.0001`, ...

@@ -20,7 +20,7 @@ class OutputFault : public Error {
   OutputFault(ErrorCode code, const std::filesystem::path& target, const std::string& fault, const char* remedy);
   OutputFault(const OutputFault&) = default;
   OutputFault& operator=(const OutputFault&) = default;
-  ~OutputFault() override;  // defined in one source file, for the same reason as Error's
+  ~OutputFault() override;  // defined in one source file, for the same reason as the destructor of Error
   /// Returns the error as Error(system_failure), because the directory was removed or made inaccessible after the
   /// check.
   [[nodiscard]] Error since_changed() const;

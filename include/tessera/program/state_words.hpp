@@ -8,8 +8,8 @@
 #include "tessera/program/options.hpp"
 
 /// Conversion between states of `tessera serve` and words of `tessera render`. States come from the network, so only
-/// options that a state may have are accepted. Options that read or write a file are not, except for surfaces from the
-/// files with which the server was started.
+/// options that a state may have are accepted. Options that read or write a file are refused, except for surfaces from
+/// the files with which the server was started.
 namespace tessera {
 inline namespace v0_1 {
 

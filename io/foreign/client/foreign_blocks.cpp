@@ -19,7 +19,7 @@ namespace {
 
 using scene::Association;
 
-/// The numbers of a field. Their source holds them until they are first read, and this object afterwards.
+/// The numbers of a field. The source holds the numbers until they are first read; afterwards this object holds them.
 class FetchedArray {
  public:
   FetchedArray(const ForeignFile& file, ForeignArray array)
@@ -157,7 +157,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
   }
-  // Other readers checked files of mixed cells for this; blocks of Exodus arrive unchecked.
+  // Blocks of tets alone are stored without types. Most readers send them in this form; the Exodus reader sends types.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(),
                                     [](std::uint8_t t) { return t == vtk_number(CellType::tetra); });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)

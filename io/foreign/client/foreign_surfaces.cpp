@@ -90,9 +90,9 @@ VtkSurface read_vtk_surface(const InputFile& file) {
   }
   left_out += part.cell_fields.size();
   if (left_out > 0)
-    result.notes.push_back(
-        fmt::format("{} left out of the surface's arrays: only arrays with one number per point become fields",
-                    left_out == 1 ? "1 is" : fmt::format("{} are", left_out)));
+    result.notes.push_back(fmt::format(
+        "{} left out: only arrays with one number per point become fields",
+        left_out == 1 ? "1 array of the surface is" : fmt::format("{} arrays of the surface are", left_out)));
   return result;
 }
 

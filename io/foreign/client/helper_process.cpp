@@ -45,8 +45,8 @@ bool is_picture(const std::filesystem::path& file) {
 
 /// Returns the caller's environment without variables that would make the helper start as an MPI rank.
 std::vector<char*> helper_environment() {
-  // Makes malloc use large pages (glibc 2.35): readers fill hundreds of megabytes once, and most of that time are page
-  // faults.
+  // Makes malloc use large pages (glibc 2.35): readers fill hundreds of megabytes once, and page faults take most of
+  // that time.
   static char tunables[] = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> kept;
   if (::getenv("GLIBC_TUNABLES") == nullptr) kept.push_back(tunables);
@@ -183,7 +183,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  // The helper ends with its caller, at the latest when it has loaded its own libraries.
+  // The helper ends when its caller ends or, if it is still loading its libraries then, after loading them.
   pid_t process = -1;
   if (const int error = plan.start(program, {program.string()}, helper_environment().data(), process); error != 0)
     fail_to_start(task_.reader, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
@@ -287,7 +287,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
     }
   } catch (const Json::exception&) {
     throw scene::bad_input(
-        fmt::format("{}: its reader returned an invalid answer; have it written again, or in another format", subject));
+        fmt::format("{}: its reader returned an invalid answer; write the file again, or in another format", subject));
   }
   if (code != 0)
     throw scene::Error(code == static_cast<int>(scene::ErrorCode::system_failure) ? scene::ErrorCode::system_failure
@@ -359,7 +359,7 @@ SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& su
   try {
     return {reply.file, array.bytes()};
   } catch (const std::invalid_argument&) {
-    throw scene::bad_input(fmt::format("{}: its array '{}' cannot be read; have it written again, or in another format",
+    throw scene::bad_input(fmt::format("{}: its array '{}' cannot be read; write the file again, or in another format",
                                        subject, array.name));
   }
 }

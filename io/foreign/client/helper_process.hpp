@@ -36,7 +36,7 @@ class SharedBytes {
   SharedBytes& operator=(SharedBytes&& other) noexcept;
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(start_), size_}; }
-  /// Returns the bytes as numbers of type T. Remaining bytes that are less than a number are omitted.
+  /// Returns the bytes as numbers of type T. Remaining bytes that are too few for a number are omitted.
   template <class T>
   [[nodiscard]] std::span<const T> as() const {
     return {static_cast<const T*>(start_), size_ / sizeof(T)};
@@ -50,7 +50,7 @@ class SharedBytes {
 /// The purpose of a helper: which program it is, and the words of the error that is reported if the helper dies ("FILE:
 /// WORDS crashed (...); REMEDY").
 struct HelperTask {
-  std::string words = "reading it", remedy = "have it written again, or in another format";
+  std::string words = "reading it", remedy = "write the file again, or in another format";
   Reader reader = Reader::vtk;
   const Format* format = nullptr;   ///< format of the files, named in the error if the program is not installed
   ReadProgressFunction progress{};  ///< called with the progress; may be null

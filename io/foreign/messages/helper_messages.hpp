@@ -17,7 +17,7 @@ namespace tessera::io {
 ///
 /// Bytes   are CBOR. io/foreign/client/helper_process.cpp and readers/common/serve.cpp define requests and replies.
 /// Arrays  are unnamed files (memfd_create). The receiver seals them, so that they cannot shrink while they are mapped.
-///         Or arrays are sent in parts through a window: an unnamed file that is reused.
+///         Alternatively, arrays are sent in parts through a window: an unnamed file that is reused.
 
 /// Protocol version. The helper sends it first; any other version is refused.
 inline constexpr int helper_version = 6;

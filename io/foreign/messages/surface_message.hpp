@@ -23,7 +23,8 @@ struct FilledMesh {
 struct FillSize {
   double max_volume;       ///< largest volume of a tet, world units cubed
   double tets;             ///< estimated number of tets: the enclosed volume divided by `max_volume`
-  bool is_chosen = false;  ///< set by the user for a long run, which may take 40 times the time and 8 times the memory
+  bool is_chosen = false;  ///< the user chose `max_volume`: at least 40 times the time and 32 times the memory are
+                           ///< allowed
 };
 
 /// Converts a surface to JSON for the reader program. surface_of() is the inverse and throws std::exception for other

@@ -77,7 +77,8 @@ bool means(std::string_view field, std::string_view name) {
 
 using SameSize = std::vector<GridArray>;
 
-/// Chooses arrays of one size: those that include the field, otherwise the largest group, the first of several.
+/// Chooses arrays of one size: those that include the field, otherwise the largest group, or the first of several
+/// largest groups.
 const SameSize& choose_arrays(const std::vector<SameSize>& sizes, const std::string& field,
                               std::vector<std::string>& notes) {
   const SameSize* chosen = &sizes.front();

@@ -13,9 +13,9 @@ namespace tessera::readers {
 bool holds_arrays(const Hdf5File& file);
 
 /// Reads arrays of an HDF5 file that does not follow any convention. All arrays of one size become fields of a regular
-/// grid of unit steps, z slowest and x fastest; notes name the other arrays. Fields are named by their paths. Of
-/// additional dimensions, a last dimension of two to four contains components, and the first of the others contains
-/// steps.
+/// grid of unit steps, z slowest and x fastest; notes name the other arrays. Fields are named by their paths. If there
+/// are more than three dimensions, a last dimension of length two to four contains components, and the first of the
+/// other additional dimensions contains steps.
 io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const std::string& source,
                                 const nlohmann::json& request);
 

@@ -30,7 +30,8 @@ bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
   nc_close(id);
-  // Preferred because dimensions in NetCDF have a meaning, such as time, which those of other arrays do not have.
+  // Reading as NetCDF is preferred, because its dimensions have a meaning, such as time, while those of other arrays do
+  // not.
   return is_written_by_netcdf || holds_netcdf_grid(file) || !holds_arrays(opened);
 }
 
@@ -79,7 +80,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
   };
   if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // the file is not a grid
   if (kind != Kind::cgns && request.value("part", 0) > 0)
-    return {};  // only the first share contains anything: the whole file
+    return {};  // the first share is the whole file; other shares are empty
   switch (kind) {
     case Kind::vtk:
       throw refuse(

@@ -105,7 +105,7 @@ class HdfMesh {
     if (!step_) return {0, all};
     const std::size_t first = at_step("Steps/PartOffsets").value_or(0);
     if (const auto count = at_step("Steps/NumberOfParts")) return {first, *count};
-    // If steps have parts of their own, all have the same number of parts.
+    // If each step has separate parts, all steps have the same number of parts.
     const std::vector<double> offsets = numbers("Steps/PartOffsets");
     return {first, all / std::max<std::size_t>(std::set<double>(offsets.begin(), offsets.end()).size(), 1)};
   }

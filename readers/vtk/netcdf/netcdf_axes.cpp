@@ -90,7 +90,7 @@ AxisRole role_of_name(const std::string& name) {
 
 struct Evidence {
   AxisRole role = AxisRole::unknown;
-  int strength = 0;  ///< 0 for a name, which is the least reliable
+  int strength = 0;  ///< reliability of the role; 0 if only the name suggests it
 };
 
 Evidence evidence_of_attributes(const NetcdfFile& file, const NetcdfVariable& coordinate) {

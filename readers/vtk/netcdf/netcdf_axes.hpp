@@ -30,7 +30,7 @@ AxisRole role_of(const NetcdfFile& file, const NetcdfVariable& coordinate);
 const NetcdfVariable* coordinate_of(const NetcdfFile& file, const NetcdfVariable& variable,
                                     const NetcdfDimension& dimension);
 
-/// Returns the variables that a variable's attribute `coordinates` names.
+/// Returns the variables that are listed in the attribute `coordinates` of `variable`.
 std::vector<const NetcdfVariable*> named_coordinates(const NetcdfFile& file, const NetcdfVariable& variable);
 
 /// Determines the axes from the attributes of the dimensions' coordinates, the most reliable attributes first. If some
@@ -39,7 +39,7 @@ std::vector<const NetcdfVariable*> named_coordinates(const NetcdfFile& file, con
 std::optional<AxisOrder> axes_of(const NetcdfFile& file, const NetcdfVariable& variable);
 
 /// Whether a vertical coordinate increases downwards (CF 4.3). The attribute `positive` determines this; without it,
-/// pressure, depth and sigma do, because they are 0 or smallest at the top.
+/// pressure, depth and sigma are taken to increase downwards, because they are 0 or smallest at the top.
 bool counts_downwards(const NetcdfFile& file, const NetcdfVariable& coordinate);
 
 }  // namespace tessera::readers

@@ -11,7 +11,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Whether a variable has both horizontal dimensions, and otherwise only dimensions of steps.
+/// Whether a variable has both horizontal dimensions, and no other dimensions except those of steps.
 bool is_horizontal(const NetcdfVariable& candidate, const NetcdfVariable& variable, const AxisOrder& order) {
   std::size_t in_space = 0;
   for (const NetcdfDimension& dimension : candidate.dimensions) {
@@ -41,7 +41,8 @@ bool have_same_dimensions(const NetcdfVariable& a, const NetcdfVariable& b) {
                     [](const NetcdfDimension& left, const NetcdfDimension& right) { return left.id == right.id; });
 }
 
-/// Reads a horizontal coordinate, x fastest, or the bounds of one, with the corners of each cell consecutive.
+/// Reads a horizontal coordinate with x as the fastest dimension. If `corners` is 4, reads the coordinate's bounds
+/// instead; the four corners of a cell are then consecutive.
 std::vector<double> read_horizontal(const NetcdfFile& file, const NetcdfVariable& coordinate,
                                     const NetcdfVariable& variable, const AxisOrder& order,
                                     std::span<const std::size_t> step_indices, std::size_t corners) {
@@ -77,7 +78,8 @@ std::vector<double> read_horizontal(const NetcdfFile& file, const NetcdfVariable
 using Corners = std::array<std::vector<double>, 2>;  // longitudes, latitudes: four per cell, x fastest
 using Order = std::array<std::size_t, 4>;            // which corners are at (0, 0), (1, 0), (1, 1), (0, 1)
 
-/// Returns the sum of the distances between corners that neighbours should share, if corners are in this order.
+/// Returns the sum of the distances between corners that adjacent cells should share, if cells list their corners in
+/// this order.
 double mismatch_of(const Corners& corners, std::size_t columns, std::size_t rows, const Order& order) {
   double sum = 0;
   const auto add = [&](std::size_t cell, std::size_t corner, std::size_t other, std::size_t of_other) {
@@ -142,7 +144,7 @@ std::optional<CurvedCoordinates> curved_coordinates_of(const NetcdfFile& file, c
   for (const NetcdfVariable& other : file.variables())
     if (have_same_dimensions(other, variable))
       if (const auto others = found_in(named_coordinates(file, other))) return others;
-  // If each dimension has a coordinate variable, the grid is rectilinear, perhaps in a projection.
+  // If a horizontal dimension has a coordinate variable, the grid is rectilinear, perhaps in projected coordinates.
   if (coordinate_of(file, variable, variable.dimensions[order.along[0]]) != nullptr ||
       coordinate_of(file, variable, variable.dimensions[order.along[1]]) != nullptr)
     return std::nullopt;

@@ -31,8 +31,9 @@ struct CurvedGrid {
   bool has_cells = false;
 };
 
-/// Creates the grid. `z` contains the heights of the variable's levels, `z_bounds` the heights between them, which are
-/// one more. If coordinates have steps, `step_indices` selects one, with an index for each entry of order.steps.
+/// Creates the grid. `z` contains the heights of the variable's levels, and `z_bounds` the heights of the boundaries of
+/// these levels, which is one more value. If coordinates depend on the step, `step_indices` selects the step, with an
+/// index for each entry of order.steps.
 CurvedGrid curved_grid(const NetcdfFile& file, const NetcdfVariable& variable, const AxisOrder& order,
                        std::span<const std::size_t> step_indices, const CurvedCoordinates& coordinates,
                        std::span<const double> z, std::span<const double> z_bounds, std::vector<std::string>& notes);

@@ -86,7 +86,7 @@ std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
   return grids;
 }
 
-/// Whether a requested field ("point:NAME", "NAME:0", ...) is this variable.
+/// Whether a requested field ("point:NAME", "NAME:0", ...) names this variable.
 bool means(std::string_view field, const std::string& name) {
   for (const std::string_view side : {"point:", "cell:"})
     if (field.starts_with(side) && field != name) field.remove_prefix(side.size());
@@ -129,8 +129,8 @@ std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step)
   return indices;
 }
 
-/// Returns the coordinates of the only dimension of steps, unchanged, or a single time. Empty if there are several
-/// dimensions, or if the dimension is not time.
+/// If the only dimension of steps is time, returns its coordinates unchanged. Returns an empty list if that dimension
+/// is not time, or if several dimensions of steps have more than one entry.
 std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) {
   std::vector<double> times;
   for (const std::size_t d : field.order.steps) {
@@ -172,7 +172,7 @@ bool has_degrees(const NetcdfFile& file, const NetcdfVariable& coordinate) {
   return file.text(coordinate, "units").starts_with("degree") && (role == AxisRole::x || role == AxisRole::y);
 }
 
-/// Makes longitudes that cross the end of the circle continue beyond it.
+/// Adds multiples of 360 degrees to longitudes beyond the end of the circle, so that all longitudes are monotonic.
 void unwind(std::vector<double>& longitudes) {
   const bool rises = longitudes.size() > 2 && longitudes[1] > longitudes[0];
   for (std::size_t k = 1; k < longitudes.size(); ++k) {
@@ -200,8 +200,8 @@ GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field,
   return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
 }
 
-/// Returns the levels between those of the values, one more than these: the bounds of the coordinate if adjacent bounds
-/// match, otherwise the midpoints.
+/// Returns the boundaries of the levels, which is one more value than levels: the bounds of the coordinate if adjacent
+/// bounds match, otherwise the midpoints between levels.
 std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& field, const std::vector<double>& z) {
   std::vector<double> between;
   const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[2]];
@@ -212,7 +212,7 @@ std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& f
       bounds->dimensions[1].length == 2) {
     const std::vector<double> ends = read_whole(file, *bounds, 2 * dimension.length).as_doubles();
     const double sign = counts_downwards(file, *coordinate) ? -1 : 1;
-    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // pairs of bounds are decreasing
+    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // each pair is in reverse order
     bool fit = true;
     for (std::size_t k = 0; k < z.size(); ++k) {
       const double low = sign * ends[2 * k + (is_turned ? 1 : 0)], high = sign * ends[2 * k + (is_turned ? 0 : 1)];

@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
-/// Computes the sizes of parts of a header. Counts have 4 bytes, in version 5 8 bytes.
+/// Computes the sizes of parts of a header. A count takes 4 bytes, or 8 bytes in version 5.
 class Header {
  public:
   Header(int file, int format)

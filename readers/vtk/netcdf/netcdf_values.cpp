@@ -104,7 +104,8 @@ void add_valid_range(const NetcdfFile& file, const NetcdfVariable& variable, Pac
 Packing packing_of(const NetcdfFile& file, const NetcdfVariable& variable) {
   Packing packing;
   packing.type = number_type_of(variable.type, file.text(variable, "_Unsigned"));
-  // Attributes of signed types represent the unsigned numbers with the same bits.
+  // If a signed type is declared as unsigned, negative attribute values represent the unsigned numbers with the same
+  // bits.
   const bool reinterpreted = file.text(variable, "_Unsigned") == "true" && variable.type != NC_UBYTE;
   const double wrap = reinterpreted ? std::ldexp(1.0, static_cast<int>(8 * io::size_of(packing.type))) : 0;
   const auto first_of = [&](const char* attribute, double otherwise) {

@@ -11,9 +11,9 @@
 namespace tessera::readers {
 
 /// A variable's numbers after applying the attributes of the NetCDF Users Guide and CF 2.5.1 and 8.1: `_Unsigned`,
-/// `scale_factor` and `add_offset`. NaN replaces the value of `_FillValue`, `missing_value` and values outside
-/// `valid_range`, `valid_min` and `valid_max`. A variable without `_FillValue` has the default one, if its type is
-/// larger than a byte. Numbers keep their type unless one of these attributes changes them.
+/// `scale_factor` and `add_offset`. NaN replaces numbers that are equal to `_FillValue` or `missing_value`, or outside
+/// `valid_range`, `valid_min` and `valid_max`. A variable without `_FillValue` has the default fill value, if its type
+/// is larger than a byte. Numbers keep their type unless one of these attributes changes them.
 struct NetcdfValues {
   GridNumbers numbers;
   std::uint64_t default_fills = 0, out_of_range = 0;  ///< number of samples that became NaN because of the default fill

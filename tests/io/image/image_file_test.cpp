@@ -204,7 +204,7 @@ TEST(ImageFile, PngHoldsStraightAlphaInSrgb) {
 
 TEST(ImageFile, PngOfManyStripsHasTheSameBytesOnAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  const scene::Image image = picture(700, 900);  // 2.5 MB of rows, some ten strips
+  const scene::Image image = picture(700, 900);  // 2.5 MB of rows, about ten strips
   for (const int bits : {8, 16}) {
     write_image(image, folder / "one.png", {.png_bits = bits, .threads = 1});
     for (const int threads : {2, 3, 0}) {
@@ -270,7 +270,8 @@ TEST(ImageFile, JpegIsOnBlackUnlessThereIsABackground) {
   const TemporaryFolder folder;
   scene::Image image({16, 16});
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) image.rgba[i] = 0.2f, image.rgba[i + 3] = 0.4f;
-  // Checking more would need a decoder: one flat colour is its first coefficient, so files of different colours differ.
+  // Checking the colours would need a decoder. A flat colour is stored as its first coefficient, so files of different
+  // colours differ.
   write_image(image, folder / "black.jpg", {});
   write_image(image, folder / "background.jpg", {.background = glm::dvec3(0)});
   write_image(image, folder / "white.jpg", {.background = glm::dvec3(1)});
@@ -291,7 +292,7 @@ TEST(ImageFile, ExrHasTheSameBytesOnAnyNumberOfThreads) {
 TEST(ImageFile, DisplayCodesAreTheFormulas) {
   const auto formula = [](double linear) { return std::lround(255 * colormaps::encode_srgb(linear)); };
   for (int i = 0; i <= 1'000'000; ++i) ASSERT_EQ(srgb_code(i * 1e-6), formula(i * 1e-6)) << i;
-  // At the boundaries between codes, where a table would be wrong first.
+  // Values at the boundaries between codes, where a table would be wrong first.
   for (int code = 0; code < 255; ++code) {
     double edge = colormaps::decode_srgb((code + 0.5) / 255);
     for (int i = 0; i < 20; ++i) edge = std::nextafter(edge, 0.0);

@@ -22,7 +22,7 @@ using testing::BentCell;
 using testing::CellSpace;
 using testing::ReferenceCell;
 using Lists = std::vector<std::vector<int>>;
-/// With the format's name for it.
+/// Cells, each with the name that the format gives it.
 using Named = std::vector<std::pair<ReferenceCell, std::string>>;
 
 constexpr auto tet = cells::CurvedFamily::tet, pyramid = cells::CurvedFamily::pyramid,
@@ -41,7 +41,7 @@ const Lists tet_edges = {{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 4}, {3, 4}},
             base_edges = {{1, 2}, {2, 3}, {3, 4}, {4, 1}}, top_edges = {{5, 6}, {6, 7}, {7, 8}, {8, 5}},
             upright_edges = {{1, 5}, {2, 6}, {3, 7}, {4, 8}};
 
-/// As in VTK's headers, and therefore in XDMF and EnSight.
+/// Nodes have the order of VTK's headers, and therefore also of XDMF and EnSight.
 const ReferenceCell tet10{"10-node tetrahedron", tet, tet_edges},
     pyramid13{"13-node pyramid", pyramid, pyramid_edges, CellSpace::linear},
     wedge15{"15-node wedge", wedge, together(wedge_base, wedge_top, wedge_upright)},

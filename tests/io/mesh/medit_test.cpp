@@ -33,7 +33,7 @@ class Writer {
     }
   }
 
-  /// Cells of one kind, each its nodes from 1 and a reference.
+  /// Cells of one kind. Each has its nodes, numbered from 1, and a reference.
   void cells(int code, const std::vector<std::vector<std::int64_t>>& cells) {
     begin(code);
     whole(static_cast<std::int64_t>(cells.size()));
@@ -170,7 +170,7 @@ TEST(MeditBinary, FaultsAreNamedWithTheirPlace) {
   refuse(long_list, {"byte 20", "more than a file of this size can contain"});
 }
 
-/// A tetrahedron over each side of a triangle, of references 7 and 8, with `gap` after each word.
+/// Two tetrahedra with the references 7 and 8, on both sides of a triangle, with `gap` after each word.
 std::string two_tets(const std::string& gap) {
   std::string text;
   for (const char* word : {"MeshVersionFormatted", "2", "Dimension", "3", "Vertices", "5"})

@@ -100,7 +100,7 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
   write_pieces({piece_at(1), piece_at(2)});  // m.pvtu
   folder.write("first.vtu", testing::vtu_text(piece_at(0)));
   cells::CellBlock last = piece_at(3);
-  last.fields.pop_back();  // its cells are blank where "cells" is drawn
+  last.fields.pop_back();  // its cells are blank if the field "cells" is drawn
   folder.write("last.vtu", testing::vtu_text(last));
   folder.write("skin.vtp", "<VTKFile type=\"PolyData\">");  // not examined further
   const auto file = folder.write("m.vtm",

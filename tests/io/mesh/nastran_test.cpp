@@ -19,7 +19,7 @@ namespace {
 
 using Points = std::vector<glm::dvec3>;
 
-/// An entry in fields of 8 characters, continued after eight.
+/// An entry in fields of 8 characters, with a continuation line after every eight fields.
 std::string small(const std::vector<std::string>& fields) {
   std::string text = fmt::format("{:8}", fields[0]);
   for (std::size_t k = 1; k < fields.size(); ++k) {
@@ -61,7 +61,7 @@ std::vector<std::string> hexahedron(int id, int property) {
 
 std::string deck(const std::string& bulk) { return "SOL 101\nCEND\nBEGIN BULK\n" + bulk + "ENDDATA\n"; }
 
-/// A hexahedron over two units of radius and a quarter turn about z, in a system that `system` defines.
+/// A hexahedron between the radii 1 and 2 and over a quarter turn about z, in a system that `system` defines.
 std::string quarter(const std::string& system, const std::string& id = "7") {
   std::string text = system;
   const Points corners = {{1, 0, 0}, {2, 0, 0}, {2, 90, 0}, {1, 90, 0}, {1, 0, 1}, {2, 0, 1}, {2, 90, 1}, {1, 90, 1}};
@@ -112,18 +112,18 @@ TEST_F(Nastran, PointsAreInTheSystemsOfTheirGrids) {
     return small(corners);
   };
   expect_points(quarter(cord("CORD2C", "7", "", axes)), turned);
-  // Along another axis and from another place: z becomes x, and x becomes y.
+  // A system with another axis and another origin: z becomes x, and x becomes y.
   Points moved;
   for (const glm::dvec3& p : turned) moved.emplace_back(5 + p.z, p.x, p.y);
   const std::string other = cord("CORD2C", "7", "0", {"5.", "0.", "0.", "6.", "0.", "0.", "5.", "1.", "0."});
   expect_points(quarter(other), moved);
-  // By a system defined in another, and one defined by three points.
+  // A system that is defined in another system, and one that is defined by three points.
   expect_points(quarter(cord("CORD2R", "3", "0", {"5.", "0.", "0.", "6.", "0.", "0.", "5.", "1.", "0."}) +
                         cord("CORD2C", "7", "3", axes)),
                 moved);
   expect_points(quarter("GRID,101,,5.,0.,0.\nGRID,102,,9.,0.,0.\nGRID,103,,7.,3.,0.\nCORD1C,6,1,2,3,7,101,102,103\n"),
                 moved);
-  // As the default of all points without a system of their own, except those with a 0.
+  // The system is the default of all points that state none; points that state 0 do not use it.
   expect_points(quarter(other + "GRDSET,,7\nGRID,20,0,9.,9.,9.\nCTETRA,5,1,1,2,3,20\n", ""), [&] {
     Points with = moved;
     with.insert(with.begin() + 3, {9, 9, 9});
@@ -268,12 +268,13 @@ TEST_F(Nastran, ReplicationsCopyAndAddToTheEntryBefore) {
             tets);
   EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCTETRA,*1,=,5,6,7,8\n=,*1,==\n"),
             (Cells{{1, 2, 3, 4}, {5, 6, 7, 8}, {5, 6, 7, 8}}));
-  // Continued; `==` copies the fields of a continuation.
+  // Entries with continuations. `==` copies the remaining fields of the entry before, including those of its
+  // continuation.
   const Cells hexahedra = {{1, 2, 3, 4, 5, 6, 7, 8}, {9, 10, 11, 12, 13, 14, 15, 16}};
   EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,*8,*8,*8,*8,*8,*8,+\n+,*8,*8\n"), hexahedra);
   EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,3,4,5,6,==\n"),
             (Cells{hexahedra[0], {3, 4, 5, 6, 5, 6, 7, 8}}));
-  // Replications of entries that are not read are not read either.
+  // If an entry is not read, its replications are not read either.
   EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCQUAD4,2,1,1,2,3,4\n=,*1,=,*4,*4,*4,*4\n").size(), 1u);
 }
 

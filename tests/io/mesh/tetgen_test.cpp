@@ -198,8 +198,8 @@ TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
     const auto range = scene::scalar_range(read.mesh);
     EXPECT_EQ(range[0], 0);
     EXPECT_GT(range[1], 1.6);
-    // The distance to a polyhedron inscribed in the sphere differs from the sphere's by its sagitta, 2 (1 - cos pi /
-    // 24).
+    // The distance to a polyhedron inscribed in the sphere differs from the distance to the sphere by up to a facet's
+    // sagitta, 2 (1 - cos pi / 24).
     for (const scene::Tet& tet : read.mesh.tets)
       for (const std::uint32_t v : tet)
         EXPECT_NEAR(read.mesh.scalars[v], 2 - glm::length(read.mesh.positions[v] - glm::dvec3(3, -2, 5)), 0.035);
@@ -305,8 +305,8 @@ TEST_F(Filled, RefusesExcessiveTetCountsWithARemedy) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the helper has address space without a limit, for the sanitizer's sake";
 #endif
-  // Well-shaped tets are at most as wide as the plate is thick, so there would be 10^12 of them. Half a percent is
-  // feasible: some 10^5.
+  // Well-shaped tets are at most as wide as a plate is thick, so the plate of thickness 1e-6 would need 10^12 tets. A
+  // thickness of 0.005 is feasible with about 10^5.
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("thick.poly", box_poly(1, 1, 0.005))).mesh), 0.005, 1e-9);
   rusage before{}, after{};
   ::getrusage(RUSAGE_CHILDREN, &before);

@@ -107,7 +107,7 @@ TEST_F(VtuComparison, NumbersAreSpelledAsVtkReadsThem) {
     }
 }
 
-// Eight per byte, the first highest; each piece begins with a byte.
+// A byte has eight bits, the first one highest. Each piece begins with a new byte.
 TEST_F(VtuComparison, BitsAreReadPieceByPiece) {
   for (const bool is_text : {false, true}) {
     std::string text = vtu_file_text({}, {test::sample_piece(), test::sample_piece()});

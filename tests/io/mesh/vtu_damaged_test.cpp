@@ -128,7 +128,7 @@ TEST_F(VtuDamaged, HeadersThatTheirBlocksDoNotFitAreRefused) {
 }
 
 TEST_F(VtuDamaged, SmallBlocksCannotStateThatTheyAreLarge) {
-  // One block that states 2 GiB, for that many points.
+  // One small block that states 3 GiB, the size of the file's 2^27 points.
   const auto number = [](std::uint64_t value) {
     std::string bytes(8, '\0');
     std::memcpy(bytes.data(), &value, 8);

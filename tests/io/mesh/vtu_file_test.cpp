@@ -259,7 +259,8 @@ TEST_F(Vtu, PolyhedraOfBothLayoutsHaveTheSameFaces) {
     }
 }
 
-/// Cells [first, last) of a block of polyhedra as written by VTK 9.4, with cell numbers; faces between cells once.
+/// Cells [first, last) of a block of polyhedra as written by VTK 9.4, with cell numbers. A face between two cells is
+/// written once.
 std::string numbered_polyhedra(const cells::CellBlock& block, std::size_t first, std::size_t last) {
   const std::vector<testing::Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, std::size_t> numbers;
@@ -359,7 +360,7 @@ TEST_F(Vtu, OldHigherOrderHexahedraComeInTheNewOrderOfNodesInEveryPiece) {
         SCOPED_TRACE(fmt::format("order {}, version {}", order, version));
         std::vector<std::uint32_t> expected(2 * nodes);
         for (std::size_t k = 0; k < 2 * nodes; ++k) expected[k] = static_cast<std::uint32_t>(k);
-        // The nodes within the edges 10 and 11, of 0 to 11.
+        // Old versions exchange the inner nodes of the edges 10 and 11 (the last two of 12).
         for (std::size_t p = 0; p < 2 && version < std::string("2.1"); ++p)
           for (std::size_t k = 0; k < inner; ++k)
             std::swap(expected[p * nodes + 8 + 10 * inner + k], expected[p * nodes + 8 + 11 * inner + k]);

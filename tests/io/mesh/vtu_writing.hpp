@@ -33,14 +33,15 @@ struct VtuArray {
 struct VtuPiece {
   std::size_t points = 0, cells = 0;
   std::vector<VtuArray> point_data{}, cell_data{}, coordinates{}, topology{};
-  std::string point_attributes{}, cell_attributes{};  ///< of the elements, as `Scalars="f"`
+  /// Attributes of <PointData> and <CellData>, such as `Scalars="f"`.
+  std::string point_attributes{}, cell_attributes{};
 };
 
 /// The text of a file.
 std::string vtu_file_text(const VtuStorage& storage, const std::vector<VtuPiece>& pieces);
 
-/// Two cubes of 12 points, the second made of wedges: a hexahedron and two wedges with the point field "f", the vectors
-/// "v", the cell field "c", points of `point_type` and indices of `index_type`.
+/// Two cubes with 12 points in total: a hexahedron, and two wedges that fill the second cube. They have the point field
+/// "f", the vectors "v", the cell field "c", points of `point_type` and indices of `index_type`.
 VtuPiece sample_piece(const std::string& point_type = "Float64", const std::string& index_type = "Int64",
                       const std::string& cell_type = "UInt8");
 

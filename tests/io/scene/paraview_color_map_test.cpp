@@ -139,7 +139,8 @@ TEST(ParaViewColorMap, ColoursBetweenKnotsAreRightTo1e4OfLinearLight) {
           colormaps::decode_srgb(colormaps::mix_colors(a, b, t, space, wraps)) - f.evaluate(t).color;
       worst = std::max({worst, std::abs(miss.x), std::abs(miss.y), std::abs(miss.z)});
     }
-    // Chords are tested at 15 points; a gamut edge or a corner of hue between two of them can hide 2 % of the bound.
+    // Chords are tested at 15 points. A gamut edge or a corner of hue between two of these points can exceed the bound
+    // by 2 %.
     EXPECT_LE(worst, 1.02e-4) << name;
     EXPECT_LE(f.knots().size(), 400u) << name;
   }
@@ -147,7 +148,7 @@ TEST(ParaViewColorMap, ColoursBetweenKnotsAreRightTo1e4OfLinearLight) {
 
 TEST(ParaViewColorMap, OpacityIsMadeExtinctionAfterInterpolation) {
   const auto loaded = parse(map("RGB", ", \"Points\": [0, 0, 0.5, 0, 2, 0.9, 0.5, 0]"));
-  // Halfway from 0 to 0.9 opacity is 0.45 and extinction 0.598, not half of 2.303.
+  // Halfway from opacity 0 to 0.9, the opacity is 0.45. The extinction is therefore 0.598, not half of 2.303.
   EXPECT_NEAR(loaded.function.evaluate(1).extinction, -std::log(0.55), 1e-4 * 0.6);
   for (int i = 0; i <= 1000; ++i) {
     const double exact = -std::log1p(-0.9 * i / 1000.0);

@@ -100,7 +100,8 @@ TEST(Presets, RefuseAnUnknownVariantWithTheListOfThem) {
 }
 
 TEST(DefaultTransferFunction, IsNeitherTransparentNorOpaqueAnywhere) {
-  // Rays through a mesh whose diagonal is twenty unit distances: a short one crosses a tenth of it, a usual one half.
+  // Rays through a mesh whose diagonal is twenty unit distances: a short ray crosses a tenth of the diagonal, a usual
+  // ray half of it.
   colormaps::TransferFunctionOptions options;
   options.field_range = {1e-3, 7e5};
   options.default_unit_distance = 0.3;

@@ -80,7 +80,7 @@ TEST_F(GzipVolumes, RefusesDamagedFilesByTheirOwnName) {
 }
 
 TEST_F(GzipVolumes, InflatesOnlyTheSamplesThatTheHeaderStates) {
-  // Data after them takes no memory: a damaged stream there is not even detected.
+  // Data after the samples take no memory. Damage in that part of the stream is not even detected.
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
   for (const auto& [name, begin] :
        {std::pair{"b.nrrd.gz", header},

@@ -79,7 +79,7 @@ std::string nifti_by_qform(const MarkedVolume& v) {
 
 std::string comma_vector(const glm::dvec3& v) { return fmt::format("({},{},{})", v.x, v.y, v.z); }
 
-/// `signs`: from x, y and z of the file's space to right-anterior-superior.
+/// `signs` converts x, y and z of the file's space to right-anterior-superior.
 std::string nrrd_of(const MarkedVolume& v, const char* space, const glm::dvec3& signs) {
   std::string head = fmt::format(
       "NRRD0005\ntype: short\ndimension: 3\nsizes: {} {} {}\nencoding: raw\nendian: little\nspace: {}\n"
@@ -160,7 +160,7 @@ TEST(Marker, LeftIsLeftInAllOrientationsOfFilesReadHere) {
                         {"MetaImage", in("m.mha", meta_of)}});
 }
 
-/// The slices' normal is row x column, so that half of the orientations need files in another order.
+/// The normal of the slices is row x column, so half of the orientations need the files in another order.
 TEST(Marker, LeftIsLeftInAllOrientationsOfDicom) {
   if (!has_reader(Reader::dicom)) GTEST_SKIP() << "tessera-read-dicom is not installed";
   const test::TemporaryFolder folder;

@@ -37,7 +37,7 @@ TEST_F(NrrdAxes, EveryNameOfASpaceHasItsDirections) {
   struct Space {
     const char* name;
     BodyAxes axes;
-    glm::dvec3 first;  ///< in the world, for (1, 0, 0) in the file, ...
+    glm::dvec3 first;  ///< world direction of the file's (1, 0, 0); the others likewise
     glm::dvec3 second, third;
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -140,7 +140,7 @@ TEST_F(NrrdAxes, KindsAndDirectionsDistinguishListsComponentsAndTime) {
   const std::string first = "dimension: 4\nsizes: 2 4 3 2\nkinds: ";
   EXPECT_EQ(open(first + "list domain domain domain").time_step.count, 2);
   EXPECT_EQ(open(first + "2-vector space space space").fields.front().components, 2);
-  // An axis of one sample has no role, even between the others.
+  // An axis of one sample has no role, even if it is between other axes.
   EXPECT_EQ(open("dimension: 4\nsizes: 4 1 6 2\nkinds: domain list domain domain").source->geometry().points,
             (GridIndex{4, 6, 2}));
   expect_no_volume(write("dimension: 4\nsizes: 4 2 3 2\nkinds: domain list domain domain"),

@@ -38,7 +38,7 @@ TEST_F(StreamedVolumes, OfGzipMatchThoseInMemory) {
   EXPECT_TRUE(is_the_same_streamed(zipped("bytes.nii.gz", nifti_of(2, 1))));
   EXPECT_TRUE(is_the_same_streamed(zipped("doubles.nii.gz", nifti_of(64, 8))));
   EXPECT_TRUE(is_the_same_streamed(zipped("steps.nii.gz", nifti_of(4, 2, 3))));
-  // In several members, and with zeros after the last one.
+  // The file has several gzip members, and zeros after the last one.
   const std::string whole = nifti_of(2, 1);
   const std::string first = test::contents(zipped("1.gz", whole.substr(0, 100'000))),
                     second = test::contents(zipped("2.gz", whole.substr(100'000)));

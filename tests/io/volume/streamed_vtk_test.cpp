@@ -59,7 +59,7 @@ TEST_F(StreamedVtk, MatchVtksOwnReader) {
     const auto file = folder.write(std::to_string(k) + ".vti",
                                    vtk_file(c, noise(samples * each * static_cast<std::size_t>(c.components))));
     EXPECT_TRUE(read_plain_vtk_grid(file, 0)) << k;
-    // Raw ones need not be unpacked.
+    // Raw arrays need not be unpacked.
     EXPECT_EQ(is_the_same_streamed(file), c.base64 || c.compressed) << k;
     if (c.components > 1) is_the_same_streamed(file, "rho:1");
   }

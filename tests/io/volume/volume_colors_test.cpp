@@ -68,7 +68,7 @@ TEST(VolumeColors, AreRefusedUnlessAComponentOrTheLengthIsAskedFor) {
                                                     folder.write("i.vti", vti(4))};
   for (const std::filesystem::path& file : files) {
     SCOPED_TRACE(file.string());
-    test::expect_no_volume(file, "'samples' has colors of ");
+    test::expect_no_volume(file, "'samples' has colours of ");
     ReadOptions options;
     options.field = "samples";
     test::expect_no_volume(file, "choose one component with `field` samples:0 (red), or their length with samples:mag",

@@ -147,7 +147,7 @@ TEST_F(VolumeFiles, NiftiOfMoreDimensionsTooManySamplesOrTooFewBytesIsRefused) {
   put<std::int16_t>(file, 40, 6), put<std::int16_t>(file, 52, 3);
   expect_refused(folder.write("six.nii", file), "6 dimensions");
   file = test::nifti();
-  put<std::int16_t>(file, 40, 5);  // of length one each: still a volume
+  put<std::int16_t>(file, 40, 5);  // further dimensions have length one: still a volume
   EXPECT_NO_THROW(open_volume(folder.write("ones.nii", file)));
   for (const std::size_t at : {42, 44, 46}) put<std::int16_t>(file, at, 30000);
   expect_refused(folder.write("huge.nii", file), "but the file has 48");
@@ -339,7 +339,8 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
   const VolumeFile volume = open_volume(folder.write("p.pvti", whole("0 2 0 1 0 1", second)));
   EXPECT_EQ(all_samples(*volume.source), counting<double>(12));
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(volume.source->geometry().direction[0], glm::dvec3(0, 1, 0));  // the pieces', dropped by VTK's reader
+  // Direction of the pieces; VTK's reader drops it.
+  EXPECT_EQ(volume.source->geometry().direction[0], glm::dvec3(0, 1, 0));
   expect_refused(folder.write("gap.pvti", whole("0 2 0 1 0 1", "")), "1 of its 2 cells");
   expect_refused(folder.write("huge.pvti", whole("0 1000 0 1000 0 1000", second)), "cells");
   expect_refused(folder.write("gone.pvti", whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"no.vti\"/>")),
@@ -403,7 +404,7 @@ TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
   EXPECT_EQ(all_samples(*volume.source), counting<double>(16));
   EXPECT_EQ(volume.source->geometry().coordinates[0], (std::vector<double>{0.1, 1, 3, 9}));
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 2, 2}));
-  EXPECT_EQ(read_mesh(file).counts.cells_read, 3u);  // and the mesh of its cells for convert
+  EXPECT_EQ(read_mesh(file).counts.cells_read, 3u);  // convert reads its cells as a mesh
 
   const auto with = [&](const std::string& name) { return whole(all, first + part(right, name)); };
   expect_refused(folder.write("gap.pvtr", whole(all, first)), "1 of its 3 cells");
@@ -567,11 +568,11 @@ TEST_F(VolumeFiles, EvenRectilinearCoordinatesMakeARegularGridDespiteRounding) {
     EXPECT_NEAR(scene::world_of_index(falling, {0, 0, 0}).x, last, place) << type;
     EXPECT_NEAR(scene::world_of_index(falling, {3, 0, 0}).x, first, place) << type;
   }
-  // The deviation exceeds the rounding of their type.
+  // The deviation exceeds the rounding error of the coordinates' type.
   EXPECT_TRUE(geometry("Float32", "-0.7 -0.6 -0.500001 -0.4").rectilinear());
   EXPECT_TRUE(geometry("Float64", "-0.7 -0.6 -0.50000001 -0.4").rectilinear());
   EXPECT_TRUE(geometry("Int32", "5 8 12 14").rectilinear());
-  // So far from zero that rounding is a large part of a step.
+  // The coordinates are so far from zero that rounding is a large part of a step.
   EXPECT_TRUE(geometry("Float32", "1e6 1000000.125 1000000.1875 1000000.375").rectilinear());
 }
 

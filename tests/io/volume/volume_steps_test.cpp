@@ -87,7 +87,7 @@ TEST_F(VolumeSteps, NiftiStatesTimesInItsUnit) {
     std::int8_t code;
     std::vector<double> times;
   };
-  // Seconds, milliseconds, hertz, and only millimetres.
+  // The units are seconds, milliseconds, hertz (not a time), and millimetres without a unit of time.
   for (const Unit& unit : {Unit{8 + 2, {1, 3.5, 6}}, Unit{16, {0.001, 0.0035, 0.006}}, Unit{32, {}}, Unit{2, {}}}) {
     std::string file = three_steps();
     put<float>(file, 92, 2.5f);
@@ -141,7 +141,7 @@ TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
     EXPECT_EQ(volume.range, (scene::ValueRange{0, 46, 0}));
     EXPECT_EQ(volume.format, "NIfTI-1");
   }
-  // Analyze: no magic word; here in the other byte order, with packed samples.
+  // An Analyze header has no magic word. This one has the other byte order, and its samples are packed.
   header.resize(348);
   std::fill(header.begin() + 80, header.end(), '\0');
   put<std::int32_t>(header, 0, 348);
