@@ -20,11 +20,11 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Returns the view with the number of pixels that are compared. An image of fewer pixels might miss the largest
-/// errors, which are at few rays along the surface.
+/// Returns the view with the number of pixels that are compared: more than the image's, because the largest errors are
+/// at few rays along the surface.
 View compared(View view) {
   constexpr double pixels = 1 << 16;
-  const double factor = std::sqrt(pixels / (static_cast<double>(view.size.width) * view.size.height));
+  const double factor = std::min(4.0, std::sqrt(pixels / (static_cast<double>(view.size.width) * view.size.height)));
   const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * factor))); };
   view.size = {side(view.size.width), side(view.size.height)};
   return view;

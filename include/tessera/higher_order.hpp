@@ -33,15 +33,15 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 /// `accuracy`, and with no more tets than this requires. Without an accuracy the tolerance is that of `options`, and
 /// only the error is estimated.
 ///
-/// Method  The mesh is read with decreasing tolerances, and an image of the view is rendered for each (with about
-///         65,536 pixels). Images are compared if their tolerances differ by a factor of four or
-///         more. The mean difference of two images gives the rate at which the error decreases: in proportion to the
-///         tolerance or, where many rays touch the surface, as slowly as its square root. The largest difference of
-///         pixels then gives the error. 1.75 times this error is reported, since a pixel's error varies by chance from
-///         one tolerance to the next. If there are only two images, the slower rate is assumed. A mesh of up to 65,536
-///         tets is instead compared with a finer one: its tolerance is divided by 4, 16 or 64, until the number of tets
-///         is at least doubled, and twice the largest difference of the images is reported. For single cells with
-///         curved faces this is 1 to 4 times the error, while the estimate from coarser tets is up to 70 times the
+/// Method  The mesh is read with decreasing tolerances, and an image of the view is rendered for each (with 16
+///         times its pixels, but at most about 65,536). Images are compared if their tolerances differ by a factor of
+///         four or more. The mean difference of two images gives the rate at which the error decreases: in proportion
+///         to the tolerance or, where many rays touch the surface, as slowly as its square root. The largest difference
+///         of pixels then gives the error. 1.75 times this error is reported, since a pixel's error varies by chance
+///         from one tolerance to the next. If there are only two images, the slower rate is assumed. A mesh of up to
+///         65,536 tets is instead compared with a finer one: its tolerance is divided by 4, 16 or 64, until the number
+///         of tets is at least doubled, and twice the largest difference of the images is reported. For single cells
+///         with curved faces this is 1 to 4 times the error, while the estimate from coarser tets is up to 70 times the
 ///         error.
 /// Limits  The result is an estimate for the light of the volume alone, not for surfaces, shading or other views. If
 ///         `higher_order_tets` allows too few tets, the result is the error of the tets that were made.

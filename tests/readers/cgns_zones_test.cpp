@@ -579,7 +579,8 @@ TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
   far.write(cubes(row, 0, 4, 1), 4);
   far.write_part("some", cell, list, 1, {5}, "f", {0});
   far.close();
-  test::expect_bad_input([&] { read(folder / "c.cgns"); }, {"c.cgns: base/zone", "'some'", "index 5 of 1 to 4"});
+  test::expect_bad_input([&] { read(folder / "c.cgns"); },
+                         {"c.cgns: base/zone", "'some'", "index 5, which is not from 1 to 4"});
 }
 
 TEST(CgnsZones, ReadsFieldsOfOneNameFromSeveralSolutions) {
