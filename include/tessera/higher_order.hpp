@@ -41,8 +41,7 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 ///         from one tolerance to the next. If there are only two images, the slower rate is assumed. A mesh of up to
 ///         65,536 tets is instead compared with a finer one: its tolerance is divided by 4, 16 or 64, until the number
 ///         of tets is at least doubled, and twice the largest difference of the images is reported. For single cells
-///         with curved faces this is 1 to 4 times the error, while the estimate from coarser tets is up to 70 times the
-///         error.
+///         with curved faces, the result is about four times the largest error of a pixel.
 /// Limits  The result is an estimate for the light of the volume alone, not for surfaces, shading or other views. If
 ///         `higher_order_tets` allows too few tets, the result is the error of the tets that were made.
 ///
