@@ -44,7 +44,7 @@ struct StageTime {
 struct RoleTime {
   TraceRole role = TraceRole::both;
   int processes = 0;
-  bool has_frames = true;          ///< false: there is no `frame` span, so that the whole is the time of all spans
+  bool has_frames = true;          ///< false: the trace has no `frame` span; the total is then the time of all spans
   StageTime whole;                 ///< its CPU time and bytes are the sums over stages
   double busy_threads = 0;         ///< number of threads in a stage other than `wait`, mean over the whole
   std::vector<StageTime> stages;   ///< stages in frames, in the order of the pipeline, `other` last

@@ -81,7 +81,7 @@ static_assert(sizeof(PartHeader) == 32);
 
 /// Touching segments of a pixel, composited. No segment of another process can be between them.
 struct RunRecord {
-  double front;            ///< planar depth where extinction, or light if there is no extinction, becomes positive
+  double front;            ///< planar depth where extinction becomes positive; without extinction, where light does
   float thickness;         ///< back - front
   float red, green, blue;  ///< linear light that leaves the front, not attenuated by what is in front of it
   float opacity;        ///< stored instead of the transmittance: for an opacity of 1e-8, 1 - 1e-8 would be rounded to 1

@@ -65,7 +65,7 @@ void require_volume(const InputFile& file);
 ///
 /// In memory: samples that must be unpacked and take more than half of ReadOptions::memory_bytes go into a brick file
 /// without a name (system/scratch_file.hpp) as they are read, if the format provides them in parts: gzip, an array of
-/// .vti or .vtr, arrays held by a helper. If there is no space for that file, they stay in memory.
+/// .vti or .vtr, arrays held by a helper. If the disk has no space for the brick file, the samples stay in memory.
 /// World coordinates are the file's own (NIfTI's axes point right, anterior, up, DICOM's left, back, up; MetaImage's
 /// and NRRD's as stated in the file).
 /// Headers are compared with the file's size before memory is allocated. Throws Error(bad_input) in one line for a
