@@ -33,15 +33,14 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 /// `accuracy`, and with no more tets than this requires. Without an accuracy the tolerance is that of `options`, and
 /// only the error is estimated.
 ///
-/// Method  The mesh is read with decreasing tolerances, and an image of the view is rendered for each (with 16
-///         times its pixels, but at most about 65,536). Images are compared if their tolerances differ by a factor of
-///         four or more. The mean difference of two images gives the rate at which the error decreases: in proportion
-///         to the tolerance or, where many rays touch the surface, as slowly as its square root. The largest difference
-///         of pixels then gives the error. 1.75 times this error is reported, since a pixel's error varies by chance
-///         from one tolerance to the next. If there are only two images, the slower rate is assumed. A mesh of up to
-///         65,536 tets is instead compared with a finer one: its tolerance is divided by 4, 16 or 64, until the number
-///         of tets is at least doubled, and twice the largest difference of the images is reported. For single cells
-///         with curved faces, the result is about four times the largest error of a pixel.
+/// Method  The mesh is read with decreasing tolerances until its estimated error is small enough. For the estimate, it
+///         is read again with a tolerance smaller by a factor r, and images of the view are compared (with at most
+///         about 65,536 pixels). r is 4 for up to 65,536 tets and 2 for up to 524,288. If a pixel differs by d, its
+///         error is taken to be the larger of 1.5 d r / (r - 1), since errors are in proportion to the tolerance, and
+///         d + c. c is the change of the pixel in the finer image if the mesh is moved by its `position_error`
+///         parallel to the image: the error of a ray that nearly touches the surface. More tets are compared with
+///         those of a tolerance four times larger: the error is the larger of 1.5 d / 3 and c in the own image.
+///         If the number of tets does not change by a factor of two, r is larger, up to 64.
 /// Limits  The result is an estimate for the light of the volume alone, not for surfaces, shading or other views. If
 ///         `higher_order_tets` allows too few tets, the result is the error of the tets that were made.
 ///
