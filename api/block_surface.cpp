@@ -7,8 +7,8 @@
 #include "frame/mesh/boundary_faces.hpp"
 #include "frame/mesh/mesh_input.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "scene/threads.hpp"
+#include "tessera/program/text.hpp"
 #include "tessera/triangle_file.hpp"
 
 namespace tessera {
@@ -25,7 +25,7 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   if (!faces.has_volume) {
     if (faces.mesh.triangles.empty())
       throw scene::bad_input(fmt::format("{}: the block {} has neither faces nor cells; name another",
-                                         files.front().string(), scene::quote(block)));
+                                         files.front().string(), quote(block)));
     return std::move(faces.mesh);
   }
   read.grid_as_mesh = true;
@@ -34,7 +34,7 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
       scene::with_threads(options.threads, [&] { return frame::boundary_faces(StateAccess::of(volume).mesh).mesh; });
   if (boundary.triangles.empty())
     throw scene::bad_input(
-        fmt::format("{}: the block {} has no boundary; name another", files.front().string(), scene::quote(block)));
+        fmt::format("{}: the block {} has no boundary; name another", files.front().string(), quote(block)));
   if (volume.field_name() != options.field && !options.field.empty() && volume.shows_shape()) boundary.values.clear();
   return boundary;
 }

@@ -6,11 +6,22 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <span>
 
 namespace tessera::cells {
 namespace {
 
 constexpr double thinnest = 1.0 / 20;
+
+/// Returns the box around the finite points of cells.
+Box box_of_points(std::span<const CellBlock> blocks) {
+  Box box;
+  for (const CellBlock& block : blocks)
+    for (const glm::dvec3& p : block.positions)
+      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
+        box = {glm::min(box.low, p), glm::max(box.high, p)};
+  return box;
+}
 
 /// Returns the largest number that is 1, 2 or 5 times a power of ten and not above `number`.
 double round_factor(double number) {
@@ -44,19 +55,12 @@ glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degre
   return scale;
 }
 
-void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale) {
-  if (scale == glm::dvec3(1)) return;
-  for (CellBlock& block : blocks)
-    for (glm::dvec3& position : block.positions) position *= scale;
-}
-
-Box box_of_points(std::span<const CellBlock> blocks) {
-  Box box;
-  for (const CellBlock& block : blocks)
-    for (const glm::dvec3& p : block.positions)
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
-        box = {glm::min(box.low, p), glm::max(box.high, p)};
-  return box;
+void scale_points(MeshBlocks& mesh, const std::optional<glm::dvec3>& asked) {
+  const Box box = mesh.xy_in_degrees ? box_of_points(mesh.blocks) : Box();
+  mesh.axis_scale = chosen_scale(asked, mesh.xy_in_degrees, box, mesh.notes);
+  if (mesh.axis_scale == glm::dvec3(1)) return;
+  for (CellBlock& block : mesh.blocks)
+    for (glm::dvec3& position : block.positions) position *= mesh.axis_scale;
 }
 
 }  // namespace tessera::cells

@@ -3,11 +3,10 @@
 
 #include <glm/vec3.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "cells/cell_block.hpp"
+#include "cells/mesh_blocks.hpp"
 #include "tessera/camera.hpp"
 
 /// Scales each axis of the world by a factor (ReadOptions::axis_scale), which the user requested or this code chose.
@@ -23,10 +22,7 @@ glm::dvec3 scale_for_degrees(const Box& box);
 glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool xy_in_degrees, const Box& box,
                         std::vector<std::string>& notes);
 
-/// Scales the points of cells.
-void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale);
-
-/// Returns the box around the finite points of cells.
-Box box_of_points(std::span<const CellBlock> blocks);
+/// Scales the points of a mesh by its chosen scale, and sets `axis_scale`.
+void scale_points(MeshBlocks& mesh, const std::optional<glm::dvec3>& asked);
 
 }  // namespace tessera::cells

@@ -7,8 +7,9 @@
 #include <unordered_set>
 
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/printable.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -17,7 +18,7 @@ std::string list(std::span<const std::string> blocks, bool with_surfaces) {
   const std::size_t most = with_surfaces ? blocks.size() : 12;  // limit for a readable line
   std::string text;
   for (const std::string& block : blocks.first(std::min(blocks.size(), most)))
-    text += (text.empty() ? "" : ", ") + scene::quote(block);
+    text += (text.empty() ? "" : ", ") + quote(block);
   if (blocks.size() > most) text += fmt::format(" and {} more, which `tessera info` lists", blocks.size() - most);
   return text;
 }
@@ -41,13 +42,13 @@ void require_blocks(const BlockChoice& choice, std::span<const std::string> bloc
   for (const std::string& name : choice) {
     if (std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) { return means_block(name, block); }))
       continue;
-    const std::string remedy = with_surfaces ? "give boundary or a file of triangles" : "leave `block` out";
-    const auto nearest = blocks.size() > 1 ? nearest_name(name, blocks) : std::nullopt;
-    throw scene::bad_input(
-        fmt::format("{}: there is no block {}{}", source, scene::quote(name),
-                    blocks.empty() ? ": it has no named blocks; " + remedy
-                                   : "; it has " + list(blocks, with_surfaces) +
-                                         (nearest ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : "")));
+    std::string remedy = with_surfaces ? "give boundary or a file of triangles" : "leave `block` out";
+    if (!blocks.empty()) remedy = "it has " + list(blocks, with_surfaces);
+    if (const auto nearest = blocks.size() > 1 ? nearest_name(name, blocks) : std::nullopt)
+      remedy += fmt::format("; the nearest is {}", quote(*nearest));
+    throw scene::Error(
+        scene::ErrorCode::bad_input, printable(source),
+        fmt::format("there is no block {}{}", quote(name), blocks.empty() ? ": it has no named blocks" : ""), remedy);
   }
 }
 
@@ -55,7 +56,7 @@ std::string note_on_surfaces(std::string_view what, std::span<const std::string>
   constexpr std::size_t most = 20;
   std::string text;
   for (const std::string& name : names.first(std::min(names.size(), most)))
-    text += (text.empty() ? "" : ", ") + scene::quote(name);
+    text += (text.empty() ? "" : ", ") + quote(name);
   if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
   return names.size() == 1 ? fmt::format("1 {} is a surface and is left out: {} (`surface` shows it)", what, text)
                            : fmt::format("{} {}{} are surfaces and are left out: {} (`surface` shows them)",

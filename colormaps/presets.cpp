@@ -11,8 +11,8 @@
 #include "colormaps/color_map_tables.hpp"
 #include "colormaps/function_options.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::colormaps {
 namespace {
@@ -91,7 +91,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
     throw scene::bad_input(
         fmt::format("{}: no such preset; {}write COLOURS or COLOURS:OPACITY with colours {} and "
                     "opacity {}",
-                    scene::quote(name), near ? fmt::format("did you mean {}:{}? ", table->name, *near) : "",
+                    quote(name), near ? fmt::format("did you mean {}:{}? ", table->name, *near) : "",
                     fmt::join(preset_names(), ", "), fmt::join(known, ", ")));
   }
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "api/options/toml_text.hpp"
-#include "scene/quote.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
 #include "tessera/program/options.hpp"
+#include "tessera/program/text.hpp"
 #include "tessera/state.hpp"
 #include "tessera/view.hpp"
 
@@ -28,10 +28,8 @@ const OptionRow& row_named(std::string_view name, const std::string& source) {
   std::vector<std::string> names;
   for (const OptionRow* each : option_rows(Trait::render)) names.emplace_back(each->key());
   if (const auto near = nearest_name(std::string(name), names))
-    throw bad_input(
-        fmt::format("{}: {} is not an option of render; did you mean {}?", source, scene::quote(name), *near));
-  throw bad_input(
-      fmt::format("{}: {} is not an option of render; see tessera render --help-all", source, scene::quote(name)));
+    throw bad_input(fmt::format("{}: {} is not an option of render; did you mean {}?", source, quote(name), *near));
+  throw bad_input(fmt::format("{}: {} is not an option of render; see tessera render --help-all", source, quote(name)));
 }
 
 /// Converts the values in a text file to words of the command line: a flag is "true", or has no word if it is false.
@@ -40,34 +38,33 @@ std::vector<std::string> words_of(const OptionRow& row, std::vector<std::string>
   const bool is_flag = row.is(Trait::flag);
   if (!is_flag && !row.is(Trait::place)) {
     if (values.size() > 1 && !row.is(Trait::list))
-      throw bad_input(fmt::format("{}: {} takes one value; give one", source, scene::quote(name)));
+      throw bad_input(fmt::format("{}: {} takes one value; give one", source, quote(name)));
     return values;
   }
   if (values.size() != 1 || values.front().empty())
-    throw bad_input(fmt::format("{}: {} is empty; write true, or leave it out", source, scene::quote(name)));
+    throw bad_input(fmt::format("{}: {} is empty; write true, or leave it out", source, quote(name)));
   if (values.front() == "false") return {};
   if (is_flag && values.front() != "true")
-    throw bad_input(
-        fmt::format("{}: {} is true or false, not {}", source, scene::quote(name), scene::quote(values.front())));
+    throw bad_input(fmt::format("{}: {} is true or false, not {}", source, quote(name), quote(values.front())));
   return values;
 }
 
 void set_once(State& state, const OptionRow& row, std::vector<std::string> values, std::string_view name,
               const std::string& source) {
   if (state.words().contains(row.key()))
-    throw bad_input(fmt::format("{}: {} is given twice, by two names; keep one", source, scene::quote(name)));
+    throw bad_input(fmt::format("{}: {} is given twice, by two names; keep one", source, quote(name)));
   state.set(row.key(), std::move(values));
 }
 
 Error wrong_kind(std::string_view name, const char* kind, const std::string& source) {
-  return bad_input(fmt::format("{}: {} is not {}; give one", source, scene::quote(name), kind));
+  return bad_input(fmt::format("{}: {} is not {}; give one", source, quote(name), kind));
 }
 
 std::string text_of(const Json& value, std::string_view name, const std::string& source) {
   if (value.is_number()) return value.dump();
   if (!value.is_string()) throw wrong_kind(name, "text or a number", source);
   if (value.get_ref<const std::string&>().empty())
-    throw bad_input(fmt::format("{}: {} is empty; leave it out, or give a value", source, scene::quote(name)));
+    throw bad_input(fmt::format("{}: {} is empty; leave it out, or give a value", source, quote(name)));
   return value.get<std::string>();
 }
 
@@ -132,8 +129,7 @@ std::string State::json() const {
     try {
       (void)value.dump();
     } catch (const api::Json::type_error&) {
-      throw bad_input(
-          fmt::format("state: {} is not UTF-8, which JSON requires; write TOML instead", scene::quote(key)));
+      throw bad_input(fmt::format("state: {} is not UTF-8, which JSON requires; write TOML instead", quote(key)));
     }
     state[key] = std::move(value);
   }
@@ -159,7 +155,7 @@ void State::set(std::string_view option, std::vector<std::string> values) {
   if (!row.is(Trait::list) && values.size() == 1 && values.front().empty()) values.clear();
   if (row.is(Trait::flag) && !values.empty()) values = api::words_of(row, std::move(values), option, "state");
   if (values.size() > 1 && !row.is(Trait::list))
-    throw bad_input(fmt::format("state: {} takes one value; give one", scene::quote(option)));
+    throw bad_input(fmt::format("state: {} takes one value; give one", quote(option)));
   if (values.empty())
     words_.erase(std::string(row.key()));
   else

@@ -9,7 +9,6 @@
 
 #include "api/options/state_text.hpp"
 #include "api/options/surface_file_name.hpp"
-#include "scene/quote.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
@@ -29,8 +28,8 @@ const OptionRow& key_named(const std::string& name) {
     names.emplace_back(row->key());
   }
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: {} is not a setting; did you mean {}?", scene::quote(name), *near));
-  throw bad_input(fmt::format("state: {} is not a setting; docs/SERVER.md lists them", scene::quote(name)));
+    throw bad_input(fmt::format("state: {} is not a setting; did you mean {}?", quote(name), *near));
+  throw bad_input(fmt::format("state: {} is not a setting; docs/SERVER.md lists them", quote(name)));
 }
 
 /// Throws if there are too many texts or if they are too long. The texts come from the network.

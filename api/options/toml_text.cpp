@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "scene/quote.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/text.hpp"
 
@@ -50,7 +49,7 @@ class Parser {
     while (skip_to_content()) {
       TomlLine line{take_key(), {}};
       if (!keys.insert(line.key).second)
-        throw fail(fmt::format("{} is given twice; keep one, or give a list: [\"a\", \"b\"]", scene::quote(line.key)));
+        throw fail(fmt::format("{} is given twice; keep one, or give a list: [\"a\", \"b\"]", quote(line.key)));
       if (peek() == '[')
         take_list(line.values);
       else
@@ -58,8 +57,7 @@ class Parser {
       skip(blanks);
       skip_comment();
       if (!rest_.empty() && peek() != '\n')
-        throw fail(fmt::format("{} follows the value of {}; put text in quotes", scene::quote(word()),
-                               scene::quote(line.key)));
+        throw fail(fmt::format("{} follows the value of {}; put text in quotes", quote(word()), quote(line.key)));
       lines.push_back(std::move(line));
     }
     return lines;
@@ -98,12 +96,12 @@ class Parser {
     const std::string_view line = rest_.substr(0, rest_.find('\n'));
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos)
-      throw fail(fmt::format("{} has no value; write an option as in size = \"800x600\"", scene::quote(word())));
+      throw fail(fmt::format("{} has no value; write an option as in size = \"800x600\"", quote(word())));
     std::string_view key = line.substr(0, equals);
     rest_.remove_prefix(equals + 1);
     while (!key.empty() && blanks.find(key.back()) != std::string_view::npos) key.remove_suffix(1);
     if (key.empty() || !std::ranges::all_of(key, is_key_character))
-      throw fail(fmt::format("{} is not an option; write one as in size = \"800x600\"", scene::quote(key)));
+      throw fail(fmt::format("{} is not an option; write one as in size = \"800x600\"", quote(key)));
     skip(blanks);
     return std::string(key);
   }
@@ -120,8 +118,8 @@ class Parser {
       if (peek() == ',')
         take();
       else if (peek() != ']')
-        throw fail(fmt::format("{} follows a value of a list; put a comma between values, or text in quotes",
-                               scene::quote(word())));
+        throw fail(
+            fmt::format("{} follows a value of a list; put a comma between values, or text in quotes", quote(word())));
     }
     take();
   }

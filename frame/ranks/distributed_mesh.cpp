@@ -237,8 +237,13 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
                              : read_whole(transport, files, first, options, projectors);
     }
     result.facts = agree_facts(transport, result.part.mesh);
-    if (transport.size() > 1)
-      result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, options.trace);
+    if (transport.size() > 1) {
+      scene::TraceScope scope(options.trace, "partition");
+      const auto before = transport.sent(exchange::Channel::mesh);
+      result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors);
+      const auto after = transport.sent(exchange::Channel::mesh);
+      scope.moved(after.bytes - before.bytes, static_cast<std::uint32_t>(after.messages - before.messages));
+    }
   } catch (const std::bad_alloc&) {
     throw scene::Error(scene::ErrorCode::system_failure,
                        first.name + ": memory ran out; use more processes or larger machines");

@@ -108,10 +108,8 @@ std::vector<std::uint64_t> numbered_by_rank(Transport& transport, std::size_t te
 }
 
 MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFacts& facts,
-                      const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace,
-                      const ExchangeLimits& limits) {
+                      const projection::Partition& how, std::span<const int> projectors, const ExchangeLimits& limits) {
   if (transport.size() == 1) return local;
-  scene::TraceScope scope(trace, "partition");
   const int parts = static_cast<int>(projectors.size()), self = transport.rank();
   std::vector<std::uint32_t> part_of = parts_of_tets(transport, local, facts, how, parts);
 
@@ -153,7 +151,6 @@ MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFac
         continue;
       }
       bytes += message.size();
-      scope.moved(message.size(), 1);
       ++sent[static_cast<std::size_t>(part)];
       transport.send(to, Channel::mesh, std::move(message));
     }

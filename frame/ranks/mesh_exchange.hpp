@@ -10,7 +10,6 @@
 #include "projection/partition.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/tet_mesh.hpp"
-#include "scene/trace.hpp"
 
 /// A mesh in parts, one part per rank: the facts that all ranks agree on, and the distribution of tets to the
 /// projectors.
@@ -46,11 +45,10 @@ struct ExchangeLimits {
 ///
 /// Positions and scalars keep their bits. The vertices of the result are those that its tets use, numbered in the order
 /// of their first use; a vertex occurs once for each rank that sends it. If no tet must move, nothing is copied and
-/// `local` is returned. At its peak, a rank holds what it read, what it received and the bytes of `limits`. Records
-/// spans `partition`, with the bytes sent. Throws Error(system_failure) for a part of 2^32 vertices or tets, or a
-/// malformed message.
+/// `local` is returned. At its peak, a rank holds what it read, what it received and the bytes of `limits`. Throws
+/// Error(system_failure) for a part of 2^32 vertices or tets, or a malformed message.
 MeshPart redistribute(exchange::Transport& transport, MeshPart local, const scene::MeshFacts& facts,
-                      const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace = nullptr,
+                      const projection::Partition& how, std::span<const int> projectors,
                       const ExchangeLimits& limits = {});
 
 }  // namespace tessera::frame

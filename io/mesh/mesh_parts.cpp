@@ -111,7 +111,7 @@ MeshPartReading::MeshPartReading(InputFile file, const ReadOptions& options, int
   const std::string source = state_->file.name;
   with_clean_errors(source, [&] {
     state_->read(part, parts);
-    cells::scale_blocks(state_->blocks.blocks, state_->options.axis_scale.value_or(glm::dvec3(1)));
+    cells::scale_points(state_->blocks, state_->options.axis_scale);
     state_->box = cells::higher_order_box(state_->blocks.blocks);
   });
 }

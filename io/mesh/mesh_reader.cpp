@@ -47,7 +47,7 @@ auto read_content(const InputFile& file, const Read& read) {
   });
 }
 
-/// The chosen blocks of a file, warped and scaled.
+/// The chosen blocks of a file.
 cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
   return with_clean_errors(file.name, [&] {
     require_mesh(file);
@@ -55,47 +55,25 @@ cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options)
     cells::MeshBlocks read =
         read_content(file, [&](const InputFile& content) { return file.format->read_mesh(content, options); });
     keep_chosen(read, options.blocks);
-    cells::warp(read, options.warp, file.name);
-    const Box box = read.xy_in_degrees ? cells::box_of_points(read.blocks) : Box();
-    read.axis_scale = cells::chosen_scale(options.axis_scale, read.xy_in_degrees, box, read.notes);
-    cells::scale_blocks(read.blocks, read.axis_scale);
     return read;
   });
 }
 
-/// The blocks of one file or of several, the pieces of one mesh.
-cells::MeshBlocks read_pieces(std::span<const InputFile> files, const MeshOptions& options) {
-  cells::MeshBlocks all;
-  for (const InputFile& file : files) {
-    cells::MeshBlocks read = read_blocks(file, options);
-    if (files.size() == 1) return read;
-    if (!read.fields.empty())
-      throw scene::bad_input(
-          fmt::format("{}: a mesh with levels of refinement cannot be combined with other files; give it alone",
-                      printable(file.name)));
-    if (all.format.empty()) all.format = fmt::format("{} files: {}", files.size(), read.format);
-    all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
-    for (cells::CellBlock& block : read.blocks) {
-      if (block.source.empty()) block.source = file.name;
-      all.blocks.push_back(std::move(block));
-    }
-    all.time_step = read.time_step;
-    all.axis_scale = read.axis_scale;
-    cells::add_notes(read.notes, all.notes);
-    cells::add_notes(read.surface_names, all.surface_names);
+/// Adds the blocks of a further file, a piece of the same mesh.
+void add_piece(cells::MeshBlocks piece, const std::string& source, cells::MeshBlocks& all) {
+  if (!piece.fields.empty())
+    throw scene::bad_input(fmt::format(
+        "{}: a mesh with levels of refinement cannot be combined with other files; give it alone", printable(source)));
+  if (all.format.empty()) all.format = std::move(piece.format);
+  all.block_names.insert(all.block_names.end(), piece.block_names.begin(), piece.block_names.end());
+  for (cells::CellBlock& block : piece.blocks) {
+    if (block.source.empty()) block.source = source;
+    all.blocks.push_back(std::move(block));
   }
-  all.block_names = cells::distinct_names(std::move(all.block_names));
-  return all;
-}
-
-/// Returns the options that still apply after the blocks were read.
-ReadOptions options_after(const cells::MeshBlocks& read, ReadOptions options) {
-  if (read.fields.empty()) return options;
-  options.smooth = false;
-  options.field.clear();
-  for (const cells::CellBlock& block : read.blocks)
-    for (const cells::BlockField& field : block.fields) options.field = field.name;
-  return options;
+  all.time_step = piece.time_step;
+  all.xy_in_degrees = all.xy_in_degrees || piece.xy_in_degrees;
+  cells::add_notes(piece.notes, all.notes);
+  cells::add_notes(piece.surface_names, all.surface_names);
 }
 
 }  // namespace
@@ -122,15 +100,32 @@ void require_mesh(const InputFile& file) {
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options) {
   cells::MeshBlocks read = read_blocks(file, options);
   cells::require_blocks(options.blocks, read.block_names, file.name, options.surfaces);
+  cells::warp(read, options.warp, file.name);
+  cells::scale_points(read, options.axis_scale);
   return read;
 }
 
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options) {
-  cells::MeshBlocks read = read_pieces(files, {options});
   const std::string& source = files.front().name;
+  cells::MeshBlocks read;
+  for (const InputFile& file : files) {
+    cells::MeshBlocks piece = read_blocks(file, {options});
+    if (files.size() == 1)
+      read = std::move(piece);
+    else
+      add_piece(std::move(piece), file.name, read);
+  }
+  read.block_names = cells::distinct_names(std::move(read.block_names));
+  cells::require_blocks(options.blocks, read.block_names, source);
+  cells::warp(read, options.warp, source);
+  cells::scale_points(read, options.axis_scale);
+  if (files.size() > 1) read.format = fmt::format("{} files: {}", files.size(), read.format);
+  ReadOptions rest = options;
+  if (!read.fields.empty()) {  // the reader has already chosen the field
+    rest.smooth = false;
+    rest.field = read.blocks.empty() || read.blocks.back().fields.empty() ? "" : read.blocks.back().fields.back().name;
+  }
   return with_clean_errors(source, [&] {
-    cells::require_blocks(options.blocks, read.block_names, source);
-    const ReadOptions rest = options_after(read, options);
     cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);

@@ -12,7 +12,6 @@
 #include "io/files/inflated_file.hpp"
 #include "io/files/whole_file.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::io {
@@ -64,7 +63,7 @@ std::string_view without_brackets(std::string_view text) {
 std::optional<std::int64_t> NastranEntry::whole_number(std::size_t field) const {
   if (is_blank(field)) return std::nullopt;
   const auto number = number_of<std::int64_t>(fields_[field]);
-  if (!number) refuse(fmt::format("{} of {} is not a whole number; correct it", scene::quote(fields_[field]), name_));
+  if (!number) refuse(fmt::format("{} of {} is not a whole number; correct it", quote(fields_[field]), name_));
   return number;
 }
 
@@ -78,7 +77,7 @@ double NastranEntry::real(std::size_t field) const {
     text += c == 'd' || c == 'D' || c == 'E' ? 'e' : c;
   }
   const auto number = number_of<double>(text);
-  if (!number) refuse(fmt::format("{} of {} is not a number; correct it", scene::quote(fields_[field]), name_));
+  if (!number) refuse(fmt::format("{} of {} is not a number; correct it", quote(fields_[field]), name_));
   return *number;
 }
 
@@ -96,8 +95,8 @@ void NastranEntry::replicate(const NastranEntry& before) {
     const std::string written = fields_[k];
     if (!written.starts_with('=') && !written.starts_with('*')) continue;
     if (before.name_ != name_)
-      refuse(fmt::format("{} of {} has no {} before it that it could repeat; write a number", scene::quote(written),
-                         name_, name_));
+      refuse(fmt::format("{} of {} has no {} before it that it could repeat; write a number", quote(written), name_,
+                         name_));
     if (written == "=") {
       fields_[k] = copy(k);
     } else if (written == "==") {  // repeats fields to the end of the line; in the last line, of the entry
@@ -107,12 +106,12 @@ void NastranEntry::replicate(const NastranEntry& before) {
     } else {
       fields_[k] = without_brackets(std::string_view(written).substr(1));
       if (written[0] == '=' || fields_[k].empty())
-        refuse(fmt::format("{} of {} is not a valid replication; correct it", scene::quote(written), name_));
+        refuse(fmt::format("{} of {} is not a valid replication; correct it", quote(written), name_));
       const auto number = number_of<std::int64_t>(before.is_blank(k) ? "0" : before.fields_[k]);
       const auto more = number_of<std::int64_t>(fields_[k]);
       std::int64_t sum = 0;
       if (number && more && __builtin_add_overflow(*number, *more, &sum))
-        refuse(fmt::format("{} of {} leads to a number beyond 2^63; correct it", scene::quote(written), name_));
+        refuse(fmt::format("{} of {} leads to a number beyond 2^63; correct it", quote(written), name_));
       fields_[k] = number && more ? fmt::format("{}", sum) : fmt::format("{}", before.real(k) + real(k));
     }
   }
@@ -221,7 +220,7 @@ class NastranDeck {
     if (!is_there && !is_bulk_) return;  // there is no mesh in the executive or case control section
     if (!is_there)
       throw scene::bad_input(fmt::format("{}: line {}: it includes {}, and there is no such file; put it there",
-                                         from.string(), number, scene::quote(name)));
+                                         from.string(), number, quote(name)));
     end_entry();
     read(file);
   }
@@ -267,8 +266,7 @@ class NastranDeck {
   void count_images(const std::string& images) {
     constexpr std::size_t most_images = 10'000'000;
     const auto count = number_of<std::size_t>(images.empty() ? "1" : without_brackets(images));
-    if (!count)
-      entry_.refuse(fmt::format("{} is not a number of replications; correct it", scene::quote("=" + images)));
+    if (!count) entry_.refuse(fmt::format("{} is not a number of replications; correct it", quote("=" + images)));
     images_ = *count;
     if (is_image_ && images_ > most_images - all_images_)
       entry_.refuse(fmt::format("it replicates more than {} entries; write them out", most_images));

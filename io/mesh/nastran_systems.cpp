@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -92,8 +92,8 @@ const NastranSystems::System& NastranSystems::system(std::int64_t id, const std:
     const auto unread = unread_.find(id);
     throw unread == unread_.end()
         ? refuse("which the file does not have; add it, or add the file that contains it")
-        : refuse(fmt::format("a {}, which is not supported; write the points in the basic system",
-                             scene::quote(unread->second)));
+        : refuse(
+              fmt::format("a {}, which is not supported; write the points in the basic system", quote(unread->second)));
   }
   System& system = found->second;
   if (system.progress == Progress::done) return system;

@@ -7,7 +7,7 @@
 
 #include "io/text/scanner.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 TextScanner words_of(std::string_view text, const std::string& source) { return {text, source, " \t\r\n"}; }
 
 [[noreturn]] void refuse(const TextScanner& words, std::string_view word, const char* what) {
-  words.fail(fmt::format("{} {}", scene::quote(word), what));
+  words.fail(fmt::format("{} {}", quote(word), what));
 }
 
 /// Counts the numbers of a text.

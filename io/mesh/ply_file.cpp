@@ -13,7 +13,7 @@
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "scene/number_type.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -83,13 +83,12 @@ class PlyParser {
         ascii_ = words[1] == "ascii";
         const bool big_endian = words[1] == "binary_big_endian";
         is_swapped_ = scene::is_swapped(big_endian);
-        if (!ascii_ && !big_endian && words[1] != "binary_little_endian")
-          fail("its format is " + scene::quote(words[1]));
+        if (!ascii_ && !big_endian && words[1] != "binary_little_endian") fail("its format is " + quote(words[1]));
         has_format = true;
       } else if (words[0] == "element" && words.size() == 3) {
         const auto count = number_of<std::uint64_t>(words[2]);
         if (!count || *count > scanner_.rest().size())
-          fail(fmt::format("its header states {} of element {}", scene::quote(words[2]), scene::quote(words[1])));
+          fail(fmt::format("its header states {} of element {}", quote(words[2]), quote(words[1])));
         elements_.push_back({std::string(words[1]), *count, {}});
       } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
         Property property;
@@ -97,12 +96,12 @@ class PlyParser {
         if (is_list) property.count = scene::number_type_named(words[2], ply_types);
         const auto type = scene::number_type_named(words[is_list ? 3 : 1], ply_types);
         if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= NumberType::float32)))
-          fail(fmt::format("a property of {} has an unknown type", scene::quote(elements_.back().name)));
+          fail(fmt::format("a property of {} has an unknown type", quote(elements_.back().name)));
         property.type = *type;
         property.name = words.back();
         elements_.back().properties.push_back(std::move(property));
       } else {
-        fail("its header has the unknown keyword " + scene::quote(words[0]));
+        fail("its header has the unknown keyword " + quote(words[0]));
       }
     }
     if (!has_format) fail("its header names no format");
@@ -169,7 +168,7 @@ class PlyParser {
     double value = 0;
     const Scanned found = scanner_.number(value);
     if (found == Scanned::nothing) fail("it ends before its last element");
-    if (found == Scanned::other_word) fail(scene::quote(scanner_.word().substr(0, 12)) + " is not a number");
+    if (found == Scanned::other_word) fail(quote(scanner_.word().substr(0, 12)) + " is not a number");
     return value;
   }
 

@@ -15,8 +15,8 @@
 #include "io/mesh/tecplot_numbers.hpp"
 #include "io/text/scanner.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/cell_type.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -127,7 +127,7 @@ class TecplotZones {
     const std::size_t wanted = header_.zones[owner].of_cells[variable] ? own.elements : own.nodes;
     if (!own.is_passive[variable] && !header_.zones[owner].is_passive[variable] && values.size() != wanted)
       refuse(own, fmt::format("the zone shares {} values of {} with zone {}, but needs {}; export the file again",
-                              values.size(), scene::quote(header_.variables[variable]), owner + 1, wanted));
+                              values.size(), quote(header_.variables[variable]), owner + 1, wanted));
     return values;
   }
 
@@ -234,7 +234,7 @@ cells::CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const
     const std::vector<double>& values = zones.values(z, axes[a]);
     if (values.size() != zone.nodes)
       zones.refuse(zone, fmt::format("the coordinate {} is not stored at the zone's nodes; write it as NODAL",
-                                     scene::quote(header.variables[axes[a]])));
+                                     quote(header.variables[axes[a]])));
     for (std::size_t n = 0; n < zone.nodes; ++n) block.positions[n][static_cast<int>(a)] = values[n];
   }
   const std::size_t owner = zones.owner_of_elements(z);

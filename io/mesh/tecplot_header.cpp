@@ -12,7 +12,6 @@
 #include "io/text/scanner.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::io {
@@ -81,7 +80,7 @@ class TecplotWords {
 
   TecplotValue value(const std::string& key) {
     TecplotValue value{.text = {}, .is_list = false, .at = at_};
-    if (at_end()) fail(at_, fmt::format("{} has no value; export the file again", scene::quote(key)));
+    if (at_end()) fail(at_, fmt::format("{} has no value; export the file again", quote(key)));
     if (here() == '"') {
       value.text = quoted();
       return value;
@@ -97,7 +96,7 @@ class TecplotWords {
       if (here() == '(') ++depth;
       if (here() == ')' && --depth == 0) break;
     }
-    if (at_end()) fail(value.at, fmt::format("the list of {} is not closed; export the file again", scene::quote(key)));
+    if (at_end()) fail(value.at, fmt::format("the list of {} is not closed; export the file again", quote(key)));
     value.text = text_.substr(first, at_++ - first);
     return value;
   }
@@ -249,8 +248,7 @@ class HeaderParser {
       if (key.empty() || !words_.skip_equals()) {
         words_.go_to(key_at);
         if (key.starts_with("NAN") || key.starts_with("INF")) break;
-        words_.fail(key_at,
-                    fmt::format("{} is not a key of a zone with a value; export the file again", scene::quote(key)));
+        words_.fail(key_at, fmt::format("{} is not a key of a zone with a value; export the file again", quote(key)));
       }
       const TecplotValue value = words_.value(key);
       if (!is_note) set(zone, key, value);
@@ -267,8 +265,7 @@ class HeaderParser {
     const char* const end = value.text.data() + value.text.size();
     const auto read = std::from_chars(value.text.data(), end, number);
     if (read.ec != std::errc() || read.ptr != end)
-      words_.fail(value.at,
-                  fmt::format("{} is {}, not a whole number; export the file again", key, scene::quote(value.text)));
+      words_.fail(value.at, fmt::format("{} is {}, not a whole number; export the file again", key, quote(value.text)));
     return number;
   }
 
@@ -317,7 +314,7 @@ class HeaderParser {
       zone.type = TecplotZoneType::lines_or_faces;
     else
       words_.fail(value.at, fmt::format("a zone has the type {}, which is not supported; export bricks or tetrahedra",
-                                        scene::quote(value.text)));
+                                        quote(value.text)));
   }
 
   void set_packing(TecplotZone& zone, const std::string& packing, const TecplotValue& value) {
@@ -327,15 +324,14 @@ class HeaderParser {
     else if (packing == "BLOCK" || packing == "FEBLOCK")
       zone.by_point = false;
     else
-      words_.fail(value.at,
-                  fmt::format("the packing {} is not supported; write POINT or BLOCK", scene::quote(value.text)));
+      words_.fail(value.at, fmt::format("the packing {} is not supported; write POINT or BLOCK", quote(value.text)));
   }
 
   std::vector<std::size_t> variables_in(std::string_view set, const TecplotValue& value) const {
     return numbers_of(set, header_.variables.size(), [&] {
       words_.fail(value.at,
                   fmt::format("{} refers to variables other than the variables 1 to {} of the file; export it again",
-                              scene::quote(set), header_.variables.size()));
+                              quote(set), header_.variables.size()));
     });
   }
 

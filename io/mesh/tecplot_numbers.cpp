@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "io/text/scanner.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -87,8 +87,7 @@ class NumberStream {
   }
 
   [[noreturn]] void refuse(std::string_view word, const char* what) const {
-    words_.fail(
-        fmt::format("{} is among the {}, and is not a number; export the file again", scene::quote(word), what));
+    words_.fail(fmt::format("{} is among the {}, and is not a number; export the file again", quote(word), what));
   }
 
   TextScanner words_;

@@ -17,7 +17,7 @@
 #include "io/scene/paraview_color_map.hpp"
 #include "io/text/json_text.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -84,8 +84,7 @@ colormaps::LoadedTransferFunction parse_json_transfer_function(std::string_view 
   colormaps::check(options);
   for (const auto& item : root.items())
     if (item.key() != "knots")
-      throw scene::bad_input(
-          fmt::format("{}: {} is unknown next to knots; leave it out", source, scene::quote(item.key())));
+      throw scene::bad_input(fmt::format("{}: {} is unknown next to knots; leave it out", source, quote(item.key())));
   return loaded_knots(knots_of(root["knots"], source), source, options);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 
@@ -21,7 +21,5 @@ char first_character(std::string_view text);
 /// Parses a finite double that fills the whole word, in the C locale regardless of the user's locale. A leading + is
 /// allowed.
 std::optional<double> parse_number(std::string_view word);
-
-using scene::quote;
 
 }  // namespace tessera::io

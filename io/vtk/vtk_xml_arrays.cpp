@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 
@@ -24,8 +24,7 @@ void VtkXmlArrays::stream(const ForeignArray& array, const std::string& subject,
     const std::lock_guard lock(mutex_);
     if (const auto held = held_.find(array.number); held != held_.end()) stream = held->second;
   }
-  if (!stream)
-    throw scene::bad_input(fmt::format("{}: its array {} was read before", subject, scene::quote(array.name)));
+  if (!stream) throw scene::bad_input(fmt::format("{}: its array {} was read before", subject, quote(array.name)));
   (*stream)([&](std::span<const std::byte> tuples) {
     use(tuples);
     const std::uint64_t expected = expected_, before = came_.fetch_add(tuples.size());

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "system/positional_file.hpp"
 #include "tessera/program/text.hpp"
 
@@ -38,7 +37,7 @@ std::uint64_t count_of(const VtkXmlElement& piece, const std::string& attribute,
   if (!read_whole_number(piece.word(attribute), count) || count < 0 || static_cast<std::uint64_t>(count) > most_tuples)
     throw scene::bad_input(
         fmt::format("{}: the {} of piece {} is {}, which is not a valid count; the file may be damaged", source,
-                    attribute, number, scene::quote(piece.word(attribute))));
+                    attribute, number, quote(piece.word(attribute))));
   return static_cast<std::uint64_t>(count);
 }
 
@@ -111,7 +110,7 @@ class GridElements {
     while (at < elements_.size() && !(elements_[at].depth == 1 && elements_[at].name == root.word("type"))) ++at;
     if (at == elements_.size())
       throw scene::bad_input(
-          fmt::format("{}: it has no element {}; the file may be damaged", source_, scene::quote(root.word("type"))));
+          fmt::format("{}: it has no element {}; the file may be damaged", source_, quote(root.word("type"))));
     grid_.element = elements_[at];
     if (grid_.element.has("TimeValues")) throw Unknown();
     for (++at; at < elements_.size() && elements_[at].depth > 1; ++at) {

@@ -8,9 +8,9 @@
 
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "system/large_vector.hpp"
 #include "system/positional_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -90,7 +90,7 @@ Numbers numbers_in(const system::PositionalFile& file, const VtkXmlSegment& segm
     throw scene::bad_input(
         fmt::format("{}: its array {} is damaged or has {}fewer numbers than the {} that it needs; the file is "
                     "truncated or damaged, export it again",
-                    source, scene::quote(segment.array.name), numbers ? "" : "perhaps ", segment.numbers));
+                    source, quote(segment.array.name), numbers ? "" : "perhaps ", segment.numbers));
   return *std::move(numbers);
 }
 
@@ -113,12 +113,12 @@ void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& seg
     if (!numbers.read(part.data(), now)) {
       if (const std::string word = numbers.wrong_word(); !word.empty())
         throw scene::bad_input(fmt::format("{}: its array {} has {} where a number of type {} is required; correct it",
-                                           source, scene::quote(segment.array.name), scene::quote(word),
+                                           source, quote(segment.array.name), quote(word),
                                            scene::listed_name(*segment.array.type)));
       throw scene::bad_input(
           fmt::format("{}: its array {} becomes unreadable between its numbers {} and {} of {}; the file is truncated "
                       "or damaged, export it again",
-                      source, scene::quote(segment.array.name), done, done + now, segment.numbers));
+                      source, quote(segment.array.name), done, done + now, segment.numbers));
     }
     use(std::span(part).first(now * each));
     done += now;
@@ -139,7 +139,7 @@ void stream_whole_numbers(const system::PositionalFile& file, const VtkXmlSegmen
         use(wide);
       } else {
         throw scene::bad_input(fmt::format("{}: the numbers of its array {} are not integers; the file may be damaged",
-                                           source, scene::quote(segment.array.name)));
+                                           source, quote(segment.array.name)));
       }
     });
   });

@@ -14,7 +14,7 @@
 
 #include "readers/common/hdf5_handle.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -70,7 +70,7 @@ class References {
 
  private:
   [[nodiscard]] scene::Error refuse(const Path& file, const std::string& what) const {
-    const std::string where = file == first_ ? "" : fmt::format("in {}: ", scene::quote(file.filename().string()));
+    const std::string where = file == first_ ? "" : fmt::format("in {}: ", quote(file.filename().string()));
     return scene::bad_input(fmt::format("{}: {}{}", source_, where, what));
   }
 
@@ -135,7 +135,7 @@ class References {
     std::error_code unknown;
     const Path file = std::filesystem::canonical(named, unknown);
     if (unknown) return named;
-    const std::string name = scene::quote(named.filename().string());
+    const std::string name = quote(named.filename().string());
     if (!std::filesystem::is_regular_file(file, unknown))
       throw refuse(from, fmt::format("it refers to {}, which is not a regular file; put one there", name));
     if (may_ == ReferencesMay::point_below &&

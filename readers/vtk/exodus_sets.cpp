@@ -9,8 +9,8 @@
 
 #include "readers/vtk/exodus_elements.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/cell_type.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -34,7 +34,7 @@ void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids,
       throw scene::bad_input(fmt::format(
           "{}: {} is a {}, which contains {} and no volume; name element blocks or element sets, which `tessera info` "
           "lists{}",
-          source, scene::quote(name), what, holds, type == EX_SIDE_SET ? " (`surface` shows side sets)" : ""));
+          source, quote(name), what, holds, type == EX_SIDE_SET ? " (`surface` shows side sets)" : ""));
   }
 }
 
@@ -65,7 +65,7 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const cells::BlockCho
         throw scene::bad_input(
             fmt::format("{}: the element set {} refers to element {}, but the file has only {} elements; write sets "
                         "and elements from one mesh",
-                        source, scene::quote(names_.back()), number, init.num_elem));
+                        source, quote(names_.back()), number, init.num_elem));
       elements_.push_back(static_cast<std::uint64_t>(number) - 1);
     }
   }

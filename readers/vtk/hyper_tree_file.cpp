@@ -25,7 +25,7 @@
 #include "readers/vtk/vtk_session.hpp"
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -78,7 +78,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
 
   static std::string name_of(vtkXMLDataElement& array) {
     const char* const name = array.GetAttribute("Name");
-    return name != nullptr ? scene::quote(name) : "without a name";
+    return name != nullptr ? quote(name) : "without a name";
   }
 
   vtkSmartPointer<vtkDataArray> numbers_of(vtkXMLDataElement& element, std::int64_t tuples) {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "io/files/whole_file.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {
@@ -55,7 +54,7 @@ bool is_any_number(std::string_view word) {
 }
 
 std::string odd_word(std::string_view word, const char* expected) {
-  return fmt::format("it has {} where {} is expected", scene::quote(std::string(word)), expected);
+  return fmt::format("it has {} where {} is expected", quote(std::string(word)), expected);
 }
 
 /// Returns the fault in a line that contains numbers, a keyword with its arguments, or the head of an array of FIELD

@@ -50,7 +50,6 @@
 #include "readers/vtk/vtk_session.hpp"
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {
@@ -285,7 +284,7 @@ std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::vecto
     EnsightValues in_file = values_in(reader, data, values);
     if (!in_file.absent.empty())
       notes.push_back(fmt::format("{} is blank in {} of the case's parts, such as {}: {} has no values for them",
-                                  values.variable, in_file.absent.size(), scene::quote(in_file.absent.front()),
+                                  values.variable, in_file.absent.size(), quote(in_file.absent.front()),
                                   values.file_name));
     if (!in_file.end.empty()) found.push_back({values, std::move(in_file.end)});
   }

@@ -15,7 +15,7 @@
 #include "readers/common/readers.hpp"
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -58,12 +58,12 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
     const std::filesystem::path file = std::filesystem::canonical(named, unknown);
     if (unknown || !std::filesystem::is_regular_file(file, unknown))
       throw scene::bad_input(fmt::format("{}: its data are in {}, which does not exist; put the file there", source_,
-                                         scene::quote(named.filename().string())));
+                                         quote(named.filename().string())));
     if (std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
       throw scene::bad_input(
           fmt::format("{}: its data are in {}, which is neither in its directory nor below; move that file there and "
                       "correct the reference",
-                      source_, scene::quote(named.string())));
+                      source_, quote(named.string())));
     const auto* const binary = dynamic_cast<const XdmfBinaryController*>(array.getHeavyDataController(k).get());
     if (binary != nullptr) require_size(*binary, file);
     if (std::find(files_.begin(), files_.end(), file) != files_.end()) continue;
@@ -80,7 +80,7 @@ void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std
   if (size < least)
     throw scene::bad_input(
         fmt::format("{}: its data in {} end at byte {}, but that file has {} bytes; write both again", source_,
-                    scene::quote(file.filename().string()), least, size));
+                    quote(file.filename().string()), least, size));
 }
 
 void XdmfHeavyFiles::allow() const { allow_for_files(files_); }

@@ -12,7 +12,6 @@
 #include "io/files/whole_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {
@@ -54,7 +53,7 @@ class InlineNumbers {
       throw scene::bad_input(
           fmt::format("{}: a <DataItem> of the dimensions {} holds {} numbers; it is truncated or damaged, write it "
                       "again",
-                      source_, scene::quote(dimensions_), words_));
+                      source_, quote(dimensions_), words_));
     constexpr std::uint64_t most = 10'000'000;  // limit of libxml2 with the options of Xdmf's library
     if (bytes_ > most)
       throw scene::bad_input(
@@ -85,7 +84,7 @@ void check_item(const io::XmlElement& element, const std::string& source) {
     throw scene::bad_input(
         fmt::format("{}: a <DataItem> of the type {} selects single numbers, which is not supported; write these "
                     "numbers themselves, or select them as a HyperSlab",
-                    source, scene::quote(word(element, {"ItemType"}))));
+                    source, quote(word(element, {"ItemType"}))));
   if (upper_case(word(element, {"Format"})) != "BINARY") return;
   const std::string type = upper_case(word(element, {"NumberType", "DataType"})), bytes = word(element, {"Precision"});
   const bool is_known = bytes.empty() || bytes == "4" || bytes == "8" ||
@@ -94,7 +93,7 @@ void check_item(const io::XmlElement& element, const std::string& source) {
     throw scene::bad_input(
         fmt::format("{}: a <DataItem> has binary numbers of the unsupported Precision {}; write floats of 4 or 8 bytes "
                     "or integers of 1, 2, 4 or 8",
-                    source, scene::quote(bytes)));
+                    source, quote(bytes)));
 }
 
 /// Whether the element is valid according to the format's documentation, but the library cannot read it.

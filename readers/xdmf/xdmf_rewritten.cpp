@@ -15,7 +15,6 @@
 #include "readers/xdmf/xdmf_elements.hpp"
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {
@@ -154,7 +153,7 @@ class Rewriting {
       const std::string name(reinterpret_cast<const char*>(node->name));
       if (found.empty() || name != reinterpret_cast<const char*>(found.front()->name))
         throw scene::bad_input(fmt::format("{}: a <{}> refers by Reference to {}, which does not exist; {}", source_,
-                                           name, scene::quote(path), remedy));
+                                           name, quote(path), remedy));
       target = found.front();
       if (!property(target, "Reference")) break;
     }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "apps/program.hpp"
@@ -100,6 +101,27 @@ TEST(DistributedMesh, IsWhatOneProcessReads) {
       if (p < 4) pieces[p].tets.push_back(mesh.tets[t]);
   }
   expect_as_read_mesh(write_pieces(folder, pieces));
+}
+
+TEST(DistributedMesh, ItsTraceCountsTheTetsThatMove) {
+  const Folder folder;
+  const std::filesystem::path file = folder / "m.vtu";  // one process reads it, so nothing is sent before
+  io::write_vtu(datasets::cube(4), file);
+  const std::vector<int> projectors = {0, 1};
+  exchange::run_ranks(2, [&](Transport& transport) {
+    Trace trace;
+    ReadOptions options;
+    options.trace = &trace;
+    read_distributed(transport, std::span(&file, 1), io::identify(file), options, {PartitionKind::random, 1},
+                     projectors);
+    const auto sent = transport.sent(exchange::Channel::mesh);
+    const std::vector<TraceSpan> spans = trace.spans();
+    const auto found = std::ranges::find(spans, std::string_view("partition"), &TraceSpan::stage);
+    ASSERT_NE(found, spans.end());
+    EXPECT_EQ(sent.bytes > 0, transport.rank() == 0);
+    EXPECT_EQ(found->bytes, sent.bytes);
+    EXPECT_EQ(found->messages, sent.messages);
+  });
 }
 
 TEST(DistributedMesh, ADecomposedCaseIsReadByItsProcessors) {

@@ -57,7 +57,6 @@ enum class Trait : std::uint32_t {
   data = 1u << 23,        ///< what is read
   look = 1u << 24,        ///< the transfer function
   knots = 1u << 25,       ///< the knots of the transfer function; knots given in JSON already include the change
-  range = 1u << 26,       ///< also the range of values of the transfer function
   settings = 1u << 27,    ///< how the data are rendered
   view = 1u << 28,        ///< the view; a camera replaces it
   annotation = 1u << 29,  ///< what is drawn over the image

@@ -82,6 +82,15 @@ inline std::string printable_ascii(std::string_view text) {
   return result;
 }
 
+/// Returns text from a file or a user for use in a message: quoted, on one line, with at most 40 characters, and with
+/// `?` for unprintable bytes.
+inline std::string quote(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string quoted = "'";
+  quoted += printable_ascii(text.substr(0, most));
+  return quoted += text.size() > most ? "...'" : "'";
+}
+
 /// Escapes text for XML or HTML: for an attribute's value in double quotes, or between tags.
 inline std::string xml_escaped(std::string_view text) {
   std::string result;

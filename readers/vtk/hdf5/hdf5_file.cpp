@@ -9,7 +9,7 @@
 
 #include "readers/vtk/hdf5/hdf5_lzf.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -68,7 +68,7 @@ std::string missing_filter(hid_t array) {
     const H5Z_filter_t filter = H5Pget_filter2(creation.get(), static_cast<unsigned>(k), &flags, &parameters, nullptr,
                                                name.size() - 1, name.data(), &settings);
     if (filter >= 0 && H5Zfilter_avail(filter) <= 0)
-      return fmt::format("{} ({})", scene::quote(std::string(name.data())), filter);
+      return fmt::format("{} ({})", quote(std::string(name.data())), filter);
   }
   return "";
 }
@@ -160,7 +160,7 @@ bool Hdf5File::has_scales(const Hdf5Array& array) const {
 GridNumbers Hdf5File::read(const Hdf5Array& array, std::span<const std::size_t> first,
                            std::span<const std::size_t> counts) const {
   const Hdf5Handle opened(H5Dopen2(file_.get(), array.path.c_str(), H5P_DEFAULT), H5Dclose);
-  const std::string name = scene::quote(array.path);
+  const std::string name = quote(array.path);
   if (const std::string filter = missing_filter(opened.get()); !filter.empty())
     throw scene::bad_input(fmt::format(
         "{}: {} is compressed by the filter {}, which is not installed here; unpack it with h5repack -f NONE", source_,

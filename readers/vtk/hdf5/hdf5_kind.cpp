@@ -14,7 +14,7 @@
 #include "readers/vtk/hdf5/hdf5_grid.hpp"
 #include "readers/vtk/hdf5/vtk_hdf_mesh.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -84,8 +84,7 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
   switch (kind) {
     case Kind::vtk:
       throw refuse(
-          fmt::format("VTKHDF of the type {}; only UnstructuredGrid and ImageData are read", scene::quote(vtk_type))
-              .c_str(),
+          fmt::format("VTKHDF of the type {}; only UnstructuredGrid and ImageData are read", quote(vtk_type)).c_str(),
           "save it as .vtu, .vtm, .vth or .vtp in ParaView");
     case Kind::cgns:
       if (!io::read_beginning(file, 8).starts_with("\x89HDF"))

@@ -16,7 +16,7 @@
 
 #include "readers/common/serve.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -140,8 +140,8 @@ class HdfMesh {
 
   [[nodiscard]] GridNumbers read(const Hdf5Array& array, const Stretch& tuples) const {
     if (tuples.end() > array.lengths[0])
-      throw wrong(fmt::format("{} has {} tuples, not the requested {} to {}", scene::quote(array.path),
-                              array.lengths[0], tuples.first, tuples.end()));
+      throw wrong(fmt::format("{} has {} tuples, not the requested {} to {}", quote(array.path), array.lengths[0],
+                              tuples.first, tuples.end()));
     std::vector<std::size_t> first(array.lengths.size(), 0), counts = array.lengths;
     first[0] = tuples.first, counts[0] = tuples.count;
     if (tuples.count == 0) return {array.type, {}};
@@ -185,8 +185,8 @@ class HdfMesh {
       const std::size_t components = array.lengths.size() == 2 ? array.lengths[1] : 1;
       if (array.lengths.size() > 2 || components < 1 || components > 1000) {
         if (notes != nullptr)
-          notes->push_back(fmt::format("{} is left out: its dimensions are {}", scene::quote(name),
-                                       fmt::join(array.lengths, " x ")));
+          notes->push_back(
+              fmt::format("{} is left out: its dimensions are {}", quote(name), fmt::join(array.lengths, " x ")));
         continue;
       }
       Stretch own = tuples;

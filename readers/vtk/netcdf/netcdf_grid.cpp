@@ -19,7 +19,7 @@
 #include "readers/vtk/netcdf/netcdf_curved.hpp"
 #include "readers/vtk/netcdf/netcdf_values.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -194,8 +194,8 @@ GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field,
   if (axis == 2 && counts_downwards(file, *coordinate)) {
     for (double& value : values) value = -value;
     const std::string units = file.text(*coordinate, "units");
-    notes.push_back(fmt::format("{} increases downwards: z is its negative{}", scene::quote(dimension.name),
-                                units.empty() ? "" : ", in " + scene::quote(units)));
+    notes.push_back(fmt::format("{} increases downwards: z is its negative{}", quote(dimension.name),
+                                units.empty() ? "" : ", in " + quote(units)));
   }
   return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
 }

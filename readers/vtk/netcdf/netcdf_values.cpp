@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -184,7 +184,7 @@ NetcdfValues unpack(GridNumbers stored, const Packing& packing) {
 }
 
 scene::Error unreadable(const NetcdfFile& file, const NetcdfVariable& variable, int status) {
-  const std::string name = scene::quote(variable.path);
+  const std::string name = quote(variable.path);
   if (status == NC_ENOFILTER || status == NC_EFILTER)
     return scene::bad_input(fmt::format(
         "{}: {} is compressed by a filter that is not installed here; unpack it with h5repack -f NONE, or install the "
