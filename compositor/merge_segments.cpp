@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compositor/deep/deep_sink.hpp"
+#include "compositor/deep/lattice_deep_sink.hpp"
 #include "compositor/deep/layer_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
 #include "compositor/merge_kinds.hpp"
@@ -72,6 +73,8 @@ class SegmentMerger : public TileMerger {
                                                  context_.deep_accuracy, deep_);
     } else if (context_.peel) {
       square.sink = std::make_unique<LayerSink>(scene_, window, *context_.function, *context_.peel, deep_);
+    } else if (context_.deep_accuracy > 0) {
+      square.sink = std::make_unique<LatticeDeepSink>(scene_, window, context_.deep_accuracy, deep_);
     }
     if (!square.sink) square.sink = std::make_unique<PictureSink<Encoding>>(scene_, window);
     square.sink->start(square.rect);

@@ -109,7 +109,13 @@ class TilePixels<sorting::LatticeEncoding> {
   using Run = WindowState::Run;
 
   TilePixels(const TileScene& scene, bool runs)
-      : scene_(scene), rules_{scene.table, scene.least_transmittance(), runs, scene.surfaces} {}
+      : scene_(scene), rules_{scene.table, scene.least_transmittance(), runs, scene.surfaces} {
+    rules_.lattice = &scene_.lattice;
+    if (!scene.integrator->is_exact()) rules_.integrator = scene.integrator;
+  }
+
+  /// Also makes the deep samples of the pixels, in `samples`, which must outlive this object.
+  TilePixels(const TileScene& scene, WindowSamples& samples) : TilePixels(scene, false) { rules_.samples = &samples; }
 
   void start(const scene::PixelRect& rect);
   std::uint64_t take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,

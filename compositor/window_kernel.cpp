@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "compositor/deep/window_samples-inl.h"
 #include "compositor/window_light-inl.h"
 #include "sorting/sort_windows-inl.h"
 
@@ -156,13 +157,18 @@ class PixelGroup {
       // There are three passes, whose dependency chains are short enough for a processor to work on several rows at
       // once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
-      light_.integrate(table_, to - from);
+      if (HWY_UNLIKELY(rules.integrator != nullptr))
+        light_.integrate_in_double(*rules.integrator, *rules.lattice, to - from, state_.batch);
+      else
+        light_.integrate(table_, to - from);
       if (HWY_UNLIKELY(lights_ != nullptr)) {
         load_lights(from, to);
         light_.light_matter(to - from);
       }
       if (HWY_UNLIKELY(rules.surfaces != nullptr))
         light_.put_surfaces(*rules.surfaces, table_, rules.table->color_unit, rules.runs || some_unseen());
+      if (HWY_UNLIKELY(rules.samples != nullptr))
+        GroupSamples<form>(table_, state_, light_, pixel_, *rules.samples).add(to - from, rules.least_transmittance);
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(rows);
@@ -269,6 +275,7 @@ HWY_EXPORT(composite_windows);
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
                                 std::size_t at_least, WindowState& state, scene::StageTimer& timer) {
   state.lit = windows.lights() != nullptr;
+  state.is_in_double = rules.integrator != nullptr;
   const auto end = static_cast<std::int32_t>(std::clamp<std::int64_t>(final_step, -0x7fffffff, 0x7fffffff));
   const auto several = static_cast<std::int32_t>(std::clamp<std::size_t>(at_least, 1, 0x7fffffff));
   return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, several, state, timer);

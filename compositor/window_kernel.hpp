@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrals/lane_table.hpp"
+#include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/lattice/lattice_rasterizer.hpp"
 #include "projection/lattice/segment_windows.hpp"
@@ -57,7 +58,9 @@ struct WindowState {
   sorting::WindowOrder order;
   std::vector<projection::LatticeSegment> rest;
   std::vector<projection::SegmentLight> rest_lights;
-  bool lit = false;  ///< whether the windows contain the lights of segments
+  integrals::SegmentBatch batch;
+  bool lit = false;           ///< whether the windows contain the lights of segments
+  bool is_in_double = false;  ///< whether WindowRules::integrator computes their light
 
   /// Starts empty rays for the pixels of `rect`, all open.
   void start(const scene::PixelRect& rect, const projection::PixelSpace& space);
@@ -105,13 +108,19 @@ class WindowLayers {
   alignas(64) std::array<float, WindowState::pixels> last_scalar_front, last_scalar_back;
 };
 
+struct WindowSamples;  // compositor/deep/window_samples.hpp
+
 /// The parameters of compositing windows.
 struct WindowRules {
   const integrals::LaneTable* table;
   double least_transmittance;                   ///< pixels with less transmittance are closed
   bool runs = false;                            ///< segments that do not touch begin a new run
   const scene::SurfaceSet* surfaces = nullptr;  ///< the surfaces whose crossings are among the segments; null: none
-  WindowLayers* layers = nullptr;               ///< if not null, the state of a pixel is that of its current layer
+  const scene::Lattice* lattice = nullptr;      ///< with `integrator`: the lattice of the segments
+  /// If not null, this integrator computes the segments' light, in double precision.
+  const integrals::SegmentIntegrator* integrator = nullptr;
+  WindowLayers* layers = nullptr;    ///< if not null, the state of a pixel is that of its current layer
+  WindowSamples* samples = nullptr;  ///< if not null, deep samples are made, too
 };
 
 /// A run ends if the front of the next segment is more than this number of steps from the back of the run. At a shared

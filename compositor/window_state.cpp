@@ -32,7 +32,8 @@ void WindowState::start(const scene::PixelRect& rect, const projection::PixelSpa
 WindowState::Run WindowState::run(std::size_t p) const {
   return {static_cast<std::uint32_t>(p),
           back[p],
-          several[p] != 0 || (lit && first_front[p] < first_back[p]),  // the record of a segment has no light
+          // The record of a segment has no light; its receiver integrates it in lanes.
+          several[p] != 0 || ((lit || is_in_double) && first_front[p] < first_back[p]),
           {first_front[p], first_back[p], first_scalar_front[p], first_scalar_back[p]},
           red[p],
           green[p],

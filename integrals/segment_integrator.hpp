@@ -54,6 +54,9 @@ class SegmentIntegrator {
   /// positive; empty if there is no such position.
   [[nodiscard]] std::optional<double> first_visible(double scalar_front, double scalar_back) const;
 
+  /// Whether the integrator is `exact` or `auto`.
+  [[nodiscard]] bool is_exact() const { return samples_ == 0 && !segments_ && !psi_; }
+
   /// Name of the integrator that is used: "exact", "sampled:16", "preintegrated:128" or "partial".
   [[nodiscard]] std::string name() const;
 

@@ -103,6 +103,10 @@ constexpr double grid_in_double(double accuracy, double brightest = 1) {
 constexpr double deep(double accuracy) {
   return deep_pieces(accuracy) + deep_merging(accuracy) + deep_alpha(accuracy) + float_picture;
 }
+/// What is in front of a cut may have the error of an image, in its light and in its transmittance.
+constexpr double deep_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
+  return deep(accuracy) + 2 * exact_mesh_on_lattice(brightest, shaded);
+}
 
 /// Whether the accuracy also allows the error of Exchange::runs.
 constexpr bool runs_keep(double accuracy, bool shaded = false) {

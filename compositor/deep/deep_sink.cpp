@@ -13,26 +13,28 @@ constexpr std::size_t batch_pieces = 8192;
 
 }  // namespace
 
+void append_tidy(const scene::DeepImageSample& sample, std::size_t first, std::vector<scene::DeepImageSample>& to) {
+  if (sample.alpha == 0 && sample.red == 0 && sample.green == 0 && sample.blue == 0) return;
+  if (to.size() > first) {
+    scene::DeepImageSample& last = to.back();
+    if (sample.z == sample.z_back && last.z == last.z_back && sample.z == last.z) {
+      const float through = 1 - last.alpha;
+      last.red += through * sample.red;
+      last.green += through * sample.green;
+      last.blue += through * sample.blue;
+      last.alpha += through * sample.alpha;
+      return;
+    }
+  }
+  to.push_back(sample);
+}
+
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to) {
   const std::size_t first = to.size();
-  for (const DeepSample& s : samples) {
-    const scene::DeepImageSample sample{finite_float(s.front),    finite_float(s.back),
-                                        finite_float(s.light[0]), finite_float(s.light[1]),
-                                        finite_float(s.light[2]), static_cast<float>(-std::expm1(-s.optical_depth))};
-    if (sample.alpha == 0 && sample.red == 0 && sample.green == 0 && sample.blue == 0) continue;
-    if (to.size() > first) {
-      scene::DeepImageSample& last = to.back();
-      if (sample.z == sample.z_back && last.z == last.z_back && sample.z == last.z) {
-        const float through = 1 - last.alpha;
-        last.red += through * sample.red;
-        last.green += through * sample.green;
-        last.blue += through * sample.blue;
-        last.alpha += through * sample.alpha;
-        continue;
-      }
-    }
-    to.push_back(sample);
-  }
+  for (const DeepSample& s : samples)
+    append_tidy({finite_float(s.front), finite_float(s.back), finite_float(s.light[0]), finite_float(s.light[1]),
+                 finite_float(s.light[2]), static_cast<float>(-std::expm1(-s.optical_depth))},
+                first, to);
 }
 
 DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,

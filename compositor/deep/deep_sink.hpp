@@ -66,8 +66,11 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::vector<PixelSample> samples_;  ///< samples of all pixels; those of one pixel are in order
 };
 
-/// Appends the samples of one pixel, in order, as floats. Rounding depths keeps their order. If rounding turns several
-/// samples into points at one depth, they are combined. Samples without alpha and light are left out.
+/// Appends the next sample of a pixel, whose samples begin at index `first`. Samples at one point, which rounding to
+/// floats may produce, are combined. Samples without alpha and light are left out.
+void append_tidy(const scene::DeepImageSample& sample, std::size_t first, std::vector<scene::DeepImageSample>& to);
+
+/// Appends all samples of one pixel, in order, as floats. Rounding depths keeps their order.
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

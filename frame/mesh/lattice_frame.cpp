@@ -25,18 +25,19 @@ struct Brightness {
 };
 /// Returns the largest change of a pixel that the rounding of scalars may cause. It is this rounding's share of the
 /// error budget, or what the other errors leave of the budget if that is less. If it is not above zero, float lanes are
-/// not accurate enough. `peel`: the settings of layers; null: no layers.
-double most_error_of(const Settings& settings, const Brightness& light, const Peel* peel) {
+/// not accurate enough.
+double most_error_of(const Settings& settings, const Brightness& light, const FrameSettings& frame) {
   const scene::Integrator& integrator = settings.integrator;
-  if (peel != nullptr) {
+  if (frame.peel) {
     const bool exact = integrator.kind == scene::IntegratorKind::exact;
     const double accuracy = exact ? budget::exact_layers : std::min(integrator.accuracy, budget::exact_layers);
-    return budget::scalars_of_layers(accuracy, peel->threshold, light.of_rays, settings.mesh.shading.has_value());
+    return budget::scalars_of_layers(accuracy, frame.peel->threshold, light.of_rays, settings.mesh.shading.has_value());
   }
   const Surfaces& surfaces = settings.surfaces;
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic,
              shaded = settings.mesh.shading.has_value();
   const double brightest = std::max(light.of_rays, light.of_surfaces);
+  if (frame.deep && budget::deep_on_lattice(frame.deep_accuracy, brightest, shaded) > frame.deep_accuracy) return 0;
   const double share = automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
   const double all = automatic ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded)
                                : budget::exact_mesh_on_lattice(brightest, shaded);
@@ -46,7 +47,8 @@ double most_error_of(const Settings& settings, const Brightness& light, const Pe
   // Matter may be on the wrong side of a triangle.
   if (surfaces.has_faces())
     of_surfaces += projection::LatticeFaces::reach * light.per_step + projection::DepthLimits::most_error;
-  return std::min(share, promised - (all - share) - of_surfaces * std::max(1.0, light.of_surfaces));
+  const double left = std::min(share, promised - (all - share) - of_surfaces * std::max(1.0, light.of_surfaces));
+  return frame.deep ? std::min(left, budget::lattice_scalars_of_exact) : left;
 }
 // An error of at most D in the extinctions of one piece of the function changes light and opacity by at most D int T dt
 // times the largest contribution behind the piece. The integral is over the part of the ray whose scalars are in the
@@ -88,23 +90,28 @@ std::array<double, 2> with_values(std::array<double, 2> range, const Surfaces& s
   return range;
 }
 
+bool has_steps(const scene::TransferFunction& function) {
+  const auto same_value = [](const scene::Knot& a, const scene::Knot& b) { return a.value == b.value; };
+  return std::ranges::adjacent_find(function.knots(), same_value) != function.knots().end();
+}
+
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
-/// `peel`: the settings of layers; null: no layers.
 std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, const scene::Box& box,
                                         const std::array<double, 2>& scalar_range,
                                         const scene::TransferFunction& transfer_function, const Settings& settings,
-                                        const Peel* peel) {
+                                        const FrameSettings& frame) {
   using scene::Lattice;
   const std::optional<scene::Shading>& shading = settings.mesh.shading;
   const scene::TransferFunction function =
       shading ? projection::brightest(*shading, transfer_function) : transfer_function;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
-  const bool has_faces = settings.surfaces.has_faces();
-  if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      (has_faces && !settings.surfaces.iso.empty()) || !projection::lattice_available())
+  const bool has_faces = settings.surfaces.has_faces(), has_devices = !settings.mesh.device.backends.empty();
+  if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || box.empty() ||
+      (!exact && (has_devices || has_steps(function))) || (has_faces && !settings.surfaces.iso.empty()) ||
+      !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, with_triangles(box, settings.surfaces));
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;
@@ -130,7 +137,7 @@ std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, con
   const double of_surfaces = scene::SurfaceSet(settings.surfaces, transfer_function).max_color();
   const double per_step = depth_limits_of(space, lattice, function, settings.emission, longest).light_per_step;
   const double most_error =
-      most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step}, peel);
+      most_error_of(settings, {scene::most_light(function, settings.emission, length), of_surfaces, per_step}, frame);
   if (!(most_error > 0)) return std::nullopt;
   const double brightest = std::max({1.0, function.max_color() * (independent ? length : 1), of_surfaces});
   std::vector<FunctionPiece> pieces;
@@ -150,7 +157,7 @@ std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, con
   scalars.place(origin, reach);
   if (std::ranges::all_of(pieces, [&](const FunctionPiece& p) { return scalars.resolves(p, most_error); }))
     return FrameLattice{scalars.lattice, transfer_function};
-  if (has_faces || !settings.mesh.device.backends.empty()) return std::nullopt;
+  if (!exact || has_faces || has_devices) return std::nullopt;
   return magnify(scalars, {low, high}, pieces, most_error, transfer_function);
 }
 
@@ -159,16 +166,16 @@ std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, con
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings) {
-  return lattice_for(space, box, scalar_range, function, settings, nullptr);
+  return lattice_for(space, box, scalar_range, function, settings, {});
 }
 
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings,
                                        const FrameSettings& frame) {
-  if (!frame.by_depth()) return lattice_of(space, box, scalar_range, function, settings);
-  if (!frame.peel || settings.emission == Emission::independent || !settings.surfaces.empty()) return std::nullopt;
-  return lattice_for(space, box, scalar_range, function, settings, &*frame.peel);
+  if (frame.by_depth() && (settings.emission == Emission::independent || !settings.surfaces.empty()))
+    return std::nullopt;
+  return lattice_for(space, box, scalar_range, function, settings, frame);
 }
 
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,

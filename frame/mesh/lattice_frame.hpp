@@ -26,14 +26,17 @@ namespace tessera::frame {
 ///   - there are both triangle surfaces and iso-surfaces: where they nearly touch, the lattice cannot resolve their
 ///     order;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;
-///   - the lattice is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
+///   - the integrator is neither exact nor automatic, and the function has steps, to which it does not round scalars,
+///   or
+///     there are devices;
+///   - the lattice is switched off, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings);
 
-/// Same as lattice_of() for a frame with these settings. Returns nothing for deep images, and for layers of independent
-/// emission or with surfaces (compositor/deep/layer_sink.hpp).
+/// Same as lattice_of() for a frame with these settings. Returns nothing for deep images and layers of independent
+/// emission or with surfaces (compositor/deep/), and for a `deep_accuracy` below 1.7e-4.
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings,

@@ -7,6 +7,7 @@
 
 #include "compositor/deep/deep_collector.hpp"
 #include "compositor/deep/deep_sink.hpp"
+#include "compositor/deep/lattice_deep_sink.hpp"
 #include "compositor/deep/layer_sink.hpp"
 #include "compositor/deep/peel_sink.hpp"
 #include "compositor/picture_sink.hpp"
@@ -103,11 +104,13 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                                                   frame.deep_accuracy, *collector);
   };
   FrameSettings by_depth;
-  if (collector) by_depth.deep = true, by_depth.peel = frame.peel;
+  if (collector) by_depth = {.deep = true, .deep_accuracy = frame.deep_accuracy, .peel = frame.peel};
   const std::optional<FrameLattice> lattice =
       lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings, by_depth);
   const auto sink_on_lattice = [&]() -> std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> {
     if (!collector) return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window);
+    if (!frame.peel)
+      return std::make_unique<compositor::LatticeDeepSink>(scene, window, frame.deep_accuracy, *collector);
     return std::make_unique<compositor::LayerSink>(scene, window, lattice->function, *frame.peel, *collector);
   };
   std::optional<integrals::LaneTable> table;

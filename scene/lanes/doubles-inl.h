@@ -48,6 +48,9 @@ HWY_INLINE DoubleMasks AndNot(DoubleMasks a, DoubleMasks b) { return {AndNot(a.l
 HWY_INLINE Doubles IfThenElseZero(DoubleMasks mask, Doubles v) {
   return {IfThenElseZero(mask.low, v.low), IfThenElseZero(mask.high, v.high)};
 }
+HWY_INLINE Doubles IfThenElse(DoubleMasks mask, Doubles yes, Doubles no) {
+  return {IfThenElse(mask.low, yes.low, no.low), IfThenElse(mask.high, yes.high, no.high)};
+}
 HWY_INLINE bool all_false(DoubleMasks mask) { return AllFalse(DD(), Or(mask.low, mask.high)); }
 
 HWY_INLINE Doubles doubles(double v) { return {Set(DD(), v), Set(DD(), v)}; }

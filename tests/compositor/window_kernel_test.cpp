@@ -9,8 +9,10 @@
 #include <array>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <utility>
 
+#include "compositor/deep/window_samples.hpp"
 #include "compositor/random_rays.hpp"
 #include "support/instruction_sets.hpp"
 
@@ -35,6 +37,7 @@ std::uint64_t composite(RandomRays& rays, const WindowRules& rules, int rounds, 
   for (const auto& ray : rays.rays) most = std::max(most, ray.size());
   windows.reset(RandomRays::pixels, most, rays.lit);
   state.start(RandomRays::rect, rays.space);
+  if (rules.samples != nullptr) rules.samples->start();
   scene::StageTimer timer(nullptr);
   std::vector<std::vector<projection::LatticeSegment>> left = rays.rays;
   std::uint64_t gone = 0, pushed = 0;
@@ -140,6 +143,47 @@ TEST(CompositeWindows, APixelsBitsDoNotDependOnTheWindows) {
         }
       }
     }
+  });
+}
+
+// Their promise is tested by tests/frame/deep_test.cpp.
+TEST(CompositeWindows, DeepSamplesAddUpToTheRayForAnyWindows) {
+  for_each_case([&](RandomRays& rays, std::uint32_t seed) {
+    const Table table(rays);
+    const auto samples_in = [&](int rounds, WindowState& state) {
+      WindowSamples samples(1e-3);
+      composite(rays, {.table = &table.lanes, .least_transmittance = 0, .samples = &samples}, rounds, seed + 1, state);
+      samples.end_all();
+      std::ranges::stable_sort(samples.ended, {}, &WindowSamples::Sample::pixel);
+      return samples.ended;
+    };
+    WindowState state, other;
+    const std::vector<WindowSamples::Sample> samples = samples_in(1, state), again = samples_in(5, other);
+    ASSERT_EQ(samples.size(), again.size());
+    auto next = samples.begin();
+    for (std::size_t p = 0; p < RandomRays::pixels; ++p) {
+      RandomRays::Run sum{};
+      sum.transmittance = 1;
+      for (std::int32_t last = std::numeric_limits<std::int32_t>::min(); next != samples.end() && next->pixel == p;
+           last = next++->back) {
+        EXPECT_GE(next->front, last);
+        EXPECT_GE(next->back, next->front);
+        const WindowSamples::Sample& same = again[static_cast<std::size_t>(next - samples.begin())];
+        EXPECT_EQ(std::tie(next->front, next->back, next->red, next->green, next->blue, next->alpha),
+                  std::tie(same.front, same.back, same.red, same.green, same.blue, same.alpha));
+        sum.red += sum.transmittance * next->red;
+        sum.green += sum.transmittance * next->green;
+        sum.blue += sum.transmittance * next->blue;
+        sum.transmittance *= 1 - double{next->alpha};
+      }
+      const auto whole = rays.composited(p, false);
+      const RandomRays::Run expected = whole.empty() ? RandomRays::Run{} : whole[0];
+      EXPECT_NEAR(sum.red, expected.red, lanes_error) << "pixel " << p;
+      EXPECT_NEAR(sum.green, expected.green, lanes_error) << "pixel " << p;
+      EXPECT_NEAR(sum.blue, expected.blue, lanes_error) << "pixel " << p;
+      EXPECT_NEAR(sum.transmittance, expected.transmittance, lanes_error) << "pixel " << p;
+    }
+    EXPECT_EQ(next, samples.end());
   });
 }
 

@@ -152,9 +152,47 @@ TEST(Deep, KeepsItsPromiseForPointAndCellDataViewsAndThickness) {
       for (const TransferFunction& function : functions) {
         const double thickness = std::array{0.05, 1.0, 300.0}[n % 3], accuracy = std::array{1e-3, 1e-2}[n % 2];
         SCOPED_TRACE(testing::Message() << n++ << ": thickness " << thickness << ", accuracy " << accuracy);
-        expect_promise(*mesh, oblique(kind), small, datasets::scaled(function, thickness), exact(), accuracy,
-                       {middle - 0.9, middle - 0.31, middle, middle + 0.4});
+        for (const bool lattice : {true, false}) {
+          SCOPED_TRACE(lattice);
+          Settings settings = exact();
+          settings.use.lattice = lattice;
+          expect_promise(*mesh, oblique(kind), small, datasets::scaled(function, thickness), settings, accuracy,
+                         {middle - 0.9, middle - 0.31, middle, middle + 0.4});
+        }
       }
+}
+
+TEST(Deep, KeepsItsPromiseForLitMatter) {
+  Settings settings = exact();
+  settings.mesh.shading.emplace();
+  for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective})
+    for (const double thickness : {0.2, 20.0})
+      expect_promise(datasets::cube(7, 0.2), oblique(kind), small,
+                     datasets::scaled(datasets::smooth_knots(6), thickness), settings, 1e-3,
+                     {middle - 0.5, middle, middle + 0.5});
+}
+
+TEST(Deep, IsMadeOnTheLatticeUnlessThatIsNotAccurateEnough) {
+  const scene::TetMesh mesh = datasets::cube(4);
+  const auto on_lattice = [&](const Settings& settings, double accuracy) {
+    Renderer renderer(mesh, settings);
+    renderer.set_frame({.deep_accuracy = accuracy});
+    FrameStatistics statistics;
+    DeepImage deep;
+    renderer.render(oblique(), small, datasets::smooth_knots(6), &statistics, &deep);
+    EXPECT_GT(deep.samples.size(), 0u);
+    return statistics.on_lattice;
+  };
+  EXPECT_TRUE(on_lattice(exact(), 1e-3));
+  EXPECT_TRUE(on_lattice({}, 1e-3));
+  EXPECT_FALSE(on_lattice(exact(), 1e-4));
+  EXPECT_FALSE(on_lattice(exact(Emission::independent), 1e-3));
+  Settings accurate;
+  accurate.integrator.accuracy = 1e-6;
+  EXPECT_FALSE(on_lattice(accurate, 1e-3));
+  Settings with_surface;
+  with_surface.surfaces.iso = {{0.5, glm::dvec3(1), 0.5}};
+  EXPECT_FALSE(on_lattice(with_surface, 1e-3));
 }
 
 TEST(Deep, KeepsItsPromiseForIndependentEmission) {
@@ -206,9 +244,8 @@ TEST(Deep, GivesTheSameSamplesForAnyThreadsTilesAndMemory) {
   DeepImage expected;
   const Image image = Renderer(mesh, exact()).render(oblique(), size, function, nullptr, &expected);
   const Image alone = Renderer(mesh, exact()).render(oblique(), size, function);
-  // Together with a deep image, the flat image is computed in double precision; alone, in float on the integer lattice.
-  // They are equal up to what `exact` promises.
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(image.rgba[i], alone.rgba[i], 2e-6);
+  EXPECT_EQ(image.rgba, alone.rgba);
+  EXPECT_EQ(image.depth, alone.depth);
   for (const int threads : {1, 3})
     for (const int tile : {5, 32, 128})
       for (const std::uint64_t memory : {64ull << 20, 16ull << 20}) {

@@ -6,8 +6,10 @@
 
 #include <set>
 #include <string>
+#include <utility>
 
 #include "datasets/boxes.hpp"
+#include "frame/image_difference.hpp"
 #include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"
@@ -48,6 +50,35 @@ TEST(LatticeFrame, IsServedByEveryInstructionSetWithLanesAndByTheOneThatWasChose
   });
   // Every supported machine has at least SSE4.
   EXPECT_FALSE(served.empty());
+}
+
+// The lattice changes depths and scalars by less than 1e-8; what the methods add to that is float rounding.
+TEST(LatticeFrame, SamplingMethodsGiveTheImageOfDoublePrecision) {
+  const scene::TetMesh mesh = datasets::cube(5, 0.2);
+  for (const auto kind :
+       {scene::IntegratorKind::sampled, scene::IntegratorKind::preintegrated, scene::IntegratorKind::partial})
+    for (const bool shaded : {false, true})
+      for (const Emission emission : {Emission::absorption, Emission::independent}) {
+        if (emission == Emission::independent && (shaded || kind == scene::IntegratorKind::partial)) continue;
+        Settings settings;
+        settings.integrator = {.kind = kind, .samples = 5, .table_size = 32};
+        settings.emission = emission;
+        if (shaded) settings.mesh.shading.emplace();
+        const auto render = [&](bool lattice, const scene::TransferFunction& of) {
+          settings.use.lattice = lattice;
+          FrameStatistics statistics;
+          const scene::Image image = Renderer(mesh, settings).render(camera(), size, of, &statistics);
+          return std::pair(image, statistics.on_lattice);
+        };
+        const auto [image, on_lattice] = render(true, function());
+        const auto [in_double, never] = render(false, function());
+        EXPECT_TRUE(on_lattice);
+        EXPECT_FALSE(never);
+        EXPECT_GT(difference(image, scene::Image(size)), 0.1);
+        EXPECT_LT(difference(image, in_double), 2e-6) << static_cast<int>(kind) << shaded;
+        const scene::TransferFunction step({{0.2, {1, 1, 0}, 1}, {0.5, {0, 1, 1}, 1}, {0.5, {1, 0, 0}, 3}});
+        EXPECT_FALSE(render(true, step).second);
+      }
 }
 
 TEST(LatticeFrame, OnEmulatedLanesAFrameUsesDoublesWithTheSamePromise) {

@@ -32,6 +32,13 @@ TEST(ErrorBudget, NoRenderingPathExceedsTheErrorBudget) {
   EXPECT_LE(budget::exact_grid_in_lanes(), budget::exact_grid);
 }
 
+TEST(ErrorBudget, DeepImagesAreOnTheLatticeUnlessTheyMustBeVeryAccurate) {
+  EXPECT_LE(budget::deep_on_lattice(1e-3, 1, true), 1e-3);
+  EXPECT_LE(budget::deep_on_lattice(1.7e-4, 1, true), 1.7e-4);
+  EXPECT_GT(budget::deep_on_lattice(1e-4), 1e-4);
+  EXPECT_GT(budget::deep_on_lattice(1e-3, 1000), 1e-3);
+}
+
 TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
   EXPECT_LE(budget::mesh_on_lattice(1e-5, 1, true), 1e-5);
   EXPECT_GT(budget::mesh_on_lattice(2e-6), 2e-6);
