@@ -168,6 +168,11 @@ class Rule {
 
 }  // namespace
 
+bool has_steps(const scene::TransferFunction& function) {
+  const auto same_value = [](const scene::Knot& a, const scene::Knot& b) { return a.value == b.value; };
+  return std::ranges::adjacent_find(function.knots(), same_value) != function.knots().end();
+}
+
 std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray) {
   std::vector<Step> steps;
   const auto knots = function.knots();

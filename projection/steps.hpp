@@ -26,6 +26,9 @@ struct Step {
   enum class Kind { step, surface, range_end } kind = Kind::step;  ///< surface: the value of an iso-surface
 };
 
+/// Whether the function jumps at some value.
+bool has_steps(const scene::TransferFunction& function);
+
 /// Returns the function's steps, ascending. `longest_ray` is an upper bound of a ray's world length in the mesh.
 std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray);
 

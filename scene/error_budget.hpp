@@ -103,9 +103,11 @@ constexpr double grid_in_double(double accuracy, double brightest = 1) {
 constexpr double deep(double accuracy) {
   return deep_pieces(accuracy) + deep_merging(accuracy) + deep_alpha(accuracy) + float_picture;
 }
-/// What is in front of a cut may have the error of an image, in its light and in its transmittance.
+/// What is in front of a cut may have the error of an image, in its light and in its transmittance. Float lanes add
+/// `deep_lanes`.
+constexpr double deep_lanes = 1e-6;
 constexpr double deep_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
-  return deep(accuracy) + 2 * exact_mesh_on_lattice(brightest, shaded);
+  return deep(accuracy) + 2 * exact_mesh_on_lattice(brightest, shaded) + deep_lanes;
 }
 
 /// Whether the accuracy also allows the error of Exchange::runs.

@@ -13,6 +13,7 @@
 #include "api/communicator.hpp"
 #include "api/dataset.hpp"
 #include "exchange/collectives.hpp"
+#include "projection/steps.hpp"
 #include "tessera/session.hpp"
 
 namespace tessera {
@@ -74,23 +75,27 @@ class TetComparison {
  private:
   /// Compares few tets with those of a smaller tolerance; no value if `higher_order_tets` does not allow enough tets.
   [[nodiscard]] std::optional<double> by_finer(const Dataset& data, ReadOptions options) {
-    constexpr std::uint64_t few = 1 << 16, most = 1 << 19;
+    constexpr std::uint64_t few = 1 << 16, most = 1 << 19, most_of_finer = 1 << 22;
+    constexpr double most_times = 64;
     const HigherOrderCells& cells = data.higher_order_cells();
     if (cells.tets > most) return std::nullopt;
-    if (options.higher_order_tets == default_higher_order_tets) options.higher_order_tets = few + 12 * cells.tets;
-    for (double times = cells.tets <= few ? 4 : 2; times <= 64; times *= 4) {
+    if (options.higher_order_tets == default_higher_order_tets)
+      options.higher_order_tets = std::min(few + 12 * cells.tets, most_of_finer);
+    for (double times = cells.tets <= few ? 4 : 2; times <= most_times; times *= 4) {
       options.higher_order_tolerance = cells.tolerance / times;
       const Dataset finer = open_(options);
       const HigherOrderCells& of_finer = finer.higher_order_cells();
       if (of_finer.tolerance > options.higher_order_tolerance * (1 + 1e-9)) return std::nullopt;
-      if (of_finer.tets < 2 * cells.tets) continue;
+      // Cells that hardly bend may need no more tets.
+      if (of_finer.tets < 2 * cells.tets && 4 * times <= most_times) continue;
       const Picture picture = draw(data, 0), exact = draw(finer, of_finer.position_error);
+      const double rate = rate_of(times);
       return largest([&] {
         double error = 0;
         for (std::size_t i = 0; i < picture.values.size(); ++i) {
           const double by = std::abs(static_cast<double>(picture.values[i]) - exact.values[i]);
           const double change = exact.change.empty() ? 0 : exact.change[i];
-          error = std::max({error, margin * by * times / (times - 1), by + change});
+          error = std::max({error, margin * by * rate / (rate - 1), by + change});
         }
         return error;
       });
@@ -101,22 +106,33 @@ class TetComparison {
   /// Compares many tets with those of a larger tolerance; no value if these are not fewer.
   [[nodiscard]] std::optional<double> by_coarser(const Dataset& data, ReadOptions options) {
     const HigherOrderCells& cells = data.higher_order_cells();
-    for (const double times : {4, 16, 64}) {
+    std::optional<Dataset> coarser;
+    const auto has_half = [&](double times) {
       options.higher_order_tolerance = times * cells.tolerance;
-      const Dataset coarser = open_(options);
-      if (2 * coarser.higher_order_cells().tets > cells.tets) continue;
-      const Picture picture = draw(data, cells.position_error), rough = draw(coarser, 0);
-      return largest([&] {
-        double error = 0;
-        for (std::size_t i = 0; i < picture.values.size(); ++i) {
-          const double by = std::abs(static_cast<double>(picture.values[i]) - rough.values[i]);
-          const double change = picture.change.empty() ? 0 : picture.change[i];
-          error = std::max({error, margin * by / (times - 1), change});
-        }
-        return error;
-      });
-    }
-    return std::nullopt;
+      coarser.emplace(open_(options));
+      return 2 * coarser->higher_order_cells().tets <= cells.tets;
+    };
+    constexpr double most_times = 64;
+    if (!has_half(most_times)) return std::nullopt;
+    double times = 4;
+    while (!has_half(times) && times < most_times) times *= 4;
+    const Picture picture = draw(data, cells.position_error), rough = draw(*coarser, 0);
+    const double rate = rate_of(times);
+    return largest([&] {
+      double error = 0;
+      for (std::size_t i = 0; i < picture.values.size(); ++i) {
+        const double by = std::abs(static_cast<double>(picture.values[i]) - rough.values[i]);
+        const double change = picture.change.empty() ? 0 : picture.change[i];
+        error = std::max({error, margin * by / (rate - 1), change});
+      }
+      return error;
+    });
+  }
+
+  /// Returns the factor by which errors decrease if the tolerance is divided by `times`. Rays may nearly touch the
+  /// surface at which a function with steps jumps.
+  [[nodiscard]] double rate_of(double times) const {
+    return projection::has_steps(scene_->second) ? std::sqrt(times) : times;
   }
 
   [[nodiscard]] Picture draw(const Dataset& data, double position_error) {

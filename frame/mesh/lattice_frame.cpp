@@ -8,8 +8,10 @@
 #include <limits>
 #include <vector>
 
+#include "compositor/window_kernel.hpp"
 #include "projection/lattice/lattice_rasterizer.hpp"
 #include "projection/matter_light.hpp"
+#include "projection/steps.hpp"
 #include "scene/error_budget.hpp"
 #include "scene/surface_set.hpp"
 
@@ -37,7 +39,10 @@ double most_error_of(const Settings& settings, const Brightness& light, const Fr
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic,
              shaded = settings.mesh.shading.has_value();
   const double brightest = std::max(light.of_rays, light.of_surfaces);
-  if (frame.deep && budget::deep_on_lattice(frame.deep_accuracy, brightest, shaded) > frame.deep_accuracy) return 0;
+  // A piece may be moved by compositor::touching_steps to the end of a sample, which changes light and transmittance.
+  const double moved = 2 * compositor::touching_steps * light.per_step;
+  if (frame.deep && budget::deep_on_lattice(frame.deep_accuracy, brightest, shaded) + moved > frame.deep_accuracy)
+    return 0;
   const double share = automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
   const double all = automatic ? budget::mesh_on_lattice(integrator.accuracy, brightest, shaded)
                                : budget::exact_mesh_on_lattice(brightest, shaded);
@@ -90,11 +95,6 @@ std::array<double, 2> with_values(std::array<double, 2> range, const Surfaces& s
   return range;
 }
 
-bool has_steps(const scene::TransferFunction& function) {
-  const auto same_value = [](const scene::Knot& a, const scene::Knot& b) { return a.value == b.value; };
-  return std::ranges::adjacent_find(function.knots(), same_value) != function.knots().end();
-}
-
 /// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
@@ -110,7 +110,7 @@ std::optional<FrameLattice> lattice_for(const projection::PixelSpace& space, con
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   const bool has_faces = settings.surfaces.has_faces(), has_devices = !settings.mesh.device.backends.empty();
   if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || box.empty() ||
-      (!exact && (has_devices || has_steps(function))) || (has_faces && !settings.surfaces.iso.empty()) ||
+      (!exact && (has_devices || projection::has_steps(function))) || (has_faces && !settings.surfaces.iso.empty()) ||
       !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, with_triangles(box, settings.surfaces));

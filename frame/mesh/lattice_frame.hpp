@@ -36,7 +36,7 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
                                        const scene::TransferFunction& function, const Settings& settings);
 
 /// Same as lattice_of() for a frame with these settings. Returns nothing for deep images and layers of independent
-/// emission or with surfaces (compositor/deep/), and for a `deep_accuracy` below 1.7e-4.
+/// emission or with surfaces (compositor/deep/), and for a `deep_accuracy` below 1.8e-4.
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings,

@@ -40,7 +40,8 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 ///         d + c. c is the change of the pixel in the finer image if the mesh is moved by its `position_error`
 ///         parallel to the image: the error of a ray that nearly touches the surface. More tets are compared with
 ///         those of a tolerance four times larger: the error is the larger of 1.5 d / 3 and c in the own image.
-///         If the number of tets does not change by a factor of two, r is larger, up to 64.
+///         If the number of tets does not change by a factor of two, r is larger, up to 64. For transfer functions
+///         with steps, the square root of r takes its place.
 /// Limits  The result is an estimate for the light of the volume alone, not for surfaces, shading or other views. If
 ///         `higher_order_tets` allows too few tets, the result is the error of the tets that were made.
 ///
