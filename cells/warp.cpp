@@ -11,7 +11,6 @@
 
 #include "scene/error.hpp"
 #include "tessera/program/nearest_name.hpp"
-#include "tessera/program/printable.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::cells {
@@ -41,16 +40,12 @@ void move_points(CellBlock& block, const BlockField& vector, double factor) {
 }
 
 scene::Error unknown_vector(const std::string& name, std::span<const std::string> names, const std::string& source) {
-  const auto bad_warp = [&](const std::string& problem, const std::string& remedy) {
-    return scene::Error(scene::ErrorCode::bad_input, printable(source), "`warp`: " + printable(problem),
-                        printable(remedy));
-  };
   if (names.empty())
-    return bad_warp(fmt::format("it has no vectors at its points, so '{}' cannot be one", name), "leave `warp` out");
+    return scene::bad_input(fmt::format(
+        "{}: `warp`: it has no vectors at its points, so '{}' cannot be one; leave `warp` out", source, name));
   const auto near = nearest_name(name, names);
-  return bad_warp(
-      fmt::format("there is no point vector '{}'", name),
-      fmt::format("{}it has '{}'", near ? fmt::format("did you mean '{}'? ", *near) : "", fmt::join(names, "', '")));
+  return scene::bad_input(fmt::format("{}: `warp`: there is no point vector '{}'; {}it has '{}'", source, name,
+                                      near ? fmt::format("did you mean '{}'? ", *near) : "", fmt::join(names, "', '")));
 }
 
 }  // namespace
@@ -69,8 +64,8 @@ void warp(MeshBlocks& read, const std::optional<Warp>& request, const std::strin
       if (by.vector.empty() && is_displacement_name(name)) by.vector = name;
   if (by.vector.empty()) return;
   if (!read.fields.empty())  // the reader has loaded only the chosen field (MeshBlocks::fields)
-    throw scene::Error(scene::ErrorCode::bad_input, printable(source),
-                       "`warp`: a mesh with levels of refinement cannot be moved", "leave `warp` out");
+    throw scene::bad_input(
+        fmt::format("{}: `warp`: a mesh with levels of refinement cannot be moved; leave `warp` out", source));
   std::size_t moved = 0;
   for (CellBlock& block : read.blocks)
     for (const BlockField& field : block.fields)

@@ -47,7 +47,7 @@ auto read_content(const InputFile& file, const Read& read) {
   });
 }
 
-/// The chosen blocks of a file.
+/// The chosen blocks of a file, warped.
 cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
   return with_clean_errors(file.name, [&] {
     require_mesh(file);
@@ -55,6 +55,7 @@ cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options)
     cells::MeshBlocks read =
         read_content(file, [&](const InputFile& content) { return file.format->read_mesh(content, options); });
     keep_chosen(read, options.blocks);
+    cells::warp(read, options.warp, file.name);
     return read;
   });
 }
@@ -100,7 +101,6 @@ void require_mesh(const InputFile& file) {
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options) {
   cells::MeshBlocks read = read_blocks(file, options);
   cells::require_blocks(options.blocks, read.block_names, file.name, options.surfaces);
-  cells::warp(read, options.warp, file.name);
   cells::scale_points(read, options.axis_scale);
   return read;
 }
@@ -117,8 +117,7 @@ cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& o
   }
   read.block_names = cells::distinct_names(std::move(read.block_names));
   cells::require_blocks(options.blocks, read.block_names, source);
-  cells::warp(read, options.warp, source);
-  cells::scale_points(read, options.axis_scale);
+  cells::scale_points(read, options.axis_scale);  // the same scale for all pieces
   if (files.size() > 1) read.format = fmt::format("{} files: {}", files.size(), read.format);
   ReadOptions rest = options;
   if (!read.fields.empty()) {  // the reader has already chosen the field
