@@ -39,7 +39,12 @@ class SegmentMerger : public TileMerger {
   MergedTile finish() override {
     for (Square& square : squares_)
       if (square.sink) square.sink->finish();
-    return {std::move(image_), std::move(deep_.counts), std::move(deep_.samples)};
+    if (!makes_samples()) return {std::move(image_), {}, {}};
+    scene::DeepImage deep = deep_.collector.image();
+    std::vector<std::uint32_t> counts(deep.begin.size() - 1);
+    for (std::size_t p = 0; p < counts.size(); ++p)
+      counts[p] = static_cast<std::uint32_t>(deep.begin[p + 1] - deep.begin[p]);
+    return {std::move(image_), std::move(counts), std::move(deep.samples)};
   }
 
  protected:
@@ -60,7 +65,10 @@ class SegmentMerger : public TileMerger {
                context.surfaces,
                context.light},
         rect_(rect),
-        image_({rect.width(), rect.height()}) {}
+        image_({rect.width(), rect.height()}),
+        deep_(rect) {}
+
+  [[nodiscard]] bool makes_samples() const { return context_.peel.has_value() || context_.deep_accuracy > 0; }
 
   void open(Square& square) {
     const ImageWindow window{&image_, rect_.x0, rect_.y0};
@@ -90,14 +98,17 @@ class SegmentMerger : public TileMerger {
 
  private:
   scene::Image image_;
-  /// The samples of the tile, which DeepSink delivers in one call.
+  /// The samples of the tile, from the sinks of its squares.
   struct Deep final : DeepTarget {
-    void add(const scene::PixelRect&, std::vector<std::uint32_t> c, std::vector<scene::DeepImageSample> s) override {
-      counts = std::move(c);
-      samples = std::move(s);
+    explicit Deep(const scene::PixelRect& of)
+        : tile(of), collector({of.width(), of.height()}, std::numeric_limits<std::uint64_t>::max()) {}
+    void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
+             std::vector<scene::DeepImageSample> samples) override {
+      const int x = tile.x0, y = tile.y0;
+      collector.add({rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y}, std::move(counts), std::move(samples));
     }
-    std::vector<std::uint32_t> counts;
-    std::vector<scene::DeepImageSample> samples;
+    scene::PixelRect tile;
+    DeepCollector collector;
   } deep_;
 };
 
@@ -223,7 +234,8 @@ class WindowMerger final : public SegmentMerger<LatticeEncoding> {
       if (!square.sink) {
         windows.reset(static_cast<std::size_t>(square.rect.area()), first_capacity, lit);
         open(square);
-        hold(windows.bytes() + sizeof(PictureSink<LatticeEncoding>), first_capacity);
+        const std::size_t of_samples = makes_samples() ? std::max(sizeof(LatticeDeepSink), sizeof(LayerSink)) : 0;
+        hold(windows.bytes() + std::max(of_samples, sizeof(PictureSink<LatticeEncoding>)), first_capacity);
       }
       for (std::uint32_t i = 0; i < header.segments; ++i) {
         const auto segment = reader.take<projection::LatticeSegment>();

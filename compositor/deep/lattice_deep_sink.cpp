@@ -44,13 +44,13 @@ void LatticeDeepSink::finish() {
     for (std::uint32_t k = place[p]; k < place[p + 1]; ++k) {
       const WindowSamples::Sample& s = samples_.ended[order[k]];
       double front = lattice_.depth(s.front);
+      const double back = lattice_.depth(s.back);
       // The first sample begins where the image is visible, which is computed in double precision.
       constexpr double most_steps = 256;
       if (k == place[p]) {
         const double visible = pixels_.value(p).depth;
-        if (std::abs(visible - front) <= most_steps * lattice_.depth_unit) front = visible;
+        if (std::abs(visible - front) <= most_steps * lattice_.depth_unit) front = std::min(visible, back);
       }
-      const double back = std::max(front, lattice_.depth(s.back));
       append_tidy({finite_float(front), finite_float(back), s.red, s.green, s.blue, std::min(s.alpha, 1.0f)}, first,
                   samples);
     }

@@ -70,6 +70,7 @@ class SampleLanes {
     // Samples do not overlap.
     piece.front = IfThenElse(And(takes, begun_), IfThenElse(continues, back_, Max(piece.front, back_)), piece.front);
     piece.back = Max(piece.back, piece.front);
+    for (VF& color : piece.color) color = Max(color, Zero(DF()));  // rounding may make a color of zero negative
     const MI extended = extend(And(continues, back_ > front_), piece);
     const MI begins = AndNot(extended, takes);
     if (AllFalse(d, begins)) return;
@@ -245,13 +246,17 @@ class GroupSamples {
     VF hidden;     ///< of any piece
     VF thickness;  ///< optical depth
   };
-  HWY_INLINE Bounds bounds(const Optics& a, const Optics& b, VF length) const {
+  HWY_INLINE Bounds bounds(const Optics& a, const Optics& b, VF length, std::size_t at) const {
     const DF d;
     const VF one = Set(d, 1);
     VF change = Zero(d), most = change;
     for (std::size_t c = 0; c < 3; ++c) {
       change = Max(change, Abs(b.color[c] - a.color[c]));
       most = Max(most, Max(a.color[c], b.color[c]));
+    }
+    if (is_lit_) {
+      const VF own = Load(d, light_.own + at);
+      change = own * change, most = MulAdd(own, most, Load(d, light_.white + at));
     }
     const VF thickness = Max(a.extinction, b.extinction) * length;
     const VF bend = Abs(b.extinction - a.extinction) * length * Set(d, 0.125f);
@@ -301,7 +306,7 @@ class GroupSamples {
         end = IfThenElse(RebindMask(d, is_last), back, Max(at_knot, rest.front));
       }
       const VF length = ConvertTo(df, end - rest.front) * length_per_step_, share = transmittance * Set(df, per_share_);
-      const Bounds limits = bounds(optics(index, rest.scalar), optics(index, end_scalar), length);
+      const Bounds limits = bounds(optics(index, rest.scalar), optics(index, end_scalar), length, at);
       const MF is_thin = And(Set(df, 1) >= limits.error * share, Set(df, 1) >= limits.thickness);
       const MF is_whole = Or(is_thin, Set(df, 1) >= limits.hidden * share);
       PieceEnd piece_end{end, end_scalar, FirstN(d, hn::Lanes(d))};

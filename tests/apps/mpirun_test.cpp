@@ -125,11 +125,24 @@ TEST_F(Mpirun, CellsThatOverlapHaveTheBytesOfOneProcess) {
 TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
   const Folder folder;
   const std::string mesh = folder.cube();
-  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "one.deep.exr", "--size", "50x40", "--quiet"}).status, 0);
-  const Outcome outcome =
-      mpirun(3, {"render", mesh, "-o", folder / "ranks.deep.exr", "--size", "50x40", "--quiet", "--projectors", "2"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(contents(folder / "ranks.deep.exr"), contents(folder / "one.deep.exr"));
+  // A tile may be a part of one square of lattice segments, or consist of several.
+  for (const char* tile_size : {"32", "24", "64"})
+    for (const bool peeled : {false, true}) {
+      SCOPED_TRACE(testing::Message() << tile_size << peeled);
+      Names words = {"render", mesh, "--size", "90x70", "--quiet", "--tile-size", tile_size};
+      if (peeled) words.insert(words.end(), {"--peel", "0.3:3"});
+      const auto writing = [&](const std::string& file) {
+        Names all = words;
+        all.insert(all.end(), {"-o", file});
+        return all;
+      };
+      ASSERT_EQ(tessera(writing(folder / "one.deep.exr")).status, 0);
+      Names on_ranks = writing(folder / "ranks.deep.exr");
+      on_ranks.insert(on_ranks.end(), {"--projectors", "2"});
+      const Outcome outcome = mpirun(3, on_ranks);
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_EQ(contents(folder / "ranks.deep.exr"), contents(folder / "one.deep.exr"));
+    }
 }
 
 TEST_F(Mpirun, RunsMatchTheReferenceAndTheReportHasTheJobsShape) {

@@ -164,12 +164,31 @@ TEST(Deep, KeepsItsPromiseForPointAndCellDataViewsAndThickness) {
 
 TEST(Deep, KeepsItsPromiseForLitMatter) {
   Settings settings = exact();
-  settings.mesh.shading.emplace();
-  for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective})
-    for (const double thickness : {0.2, 20.0})
-      expect_promise(datasets::cube(7, 0.2), oblique(kind), small,
-                     datasets::scaled(datasets::smooth_knots(6), thickness), settings, 1e-3,
-                     {middle - 0.5, middle, middle + 0.5});
+  for (const scene::Shading& shading : {scene::Shading{}, scene::Shading{1, 2, 3, 2}})
+    for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective})
+      for (const double thickness : {0.2, 20.0}) {
+        SCOPED_TRACE(testing::Message() << shading.specular << ", " << thickness);
+        settings.mesh.shading = shading;
+        expect_promise(datasets::cube(7, 0.2), oblique(kind), small,
+                       datasets::scaled(datasets::smooth_knots(6), thickness), settings, 1e-3,
+                       {middle - 0.5, middle, middle + 0.5});
+      }
+}
+
+// A colour of zero, computed from a slope, must not be slightly negative.
+TEST(Deep, SamplesOfAPureColorAreNotNegativeAndMerge) {
+  for (const double value : {0.3, 0.37, 0.41, 0.477, 0.6}) {
+    scene::TetMesh mesh = datasets::cube(5);
+    for (double& scalar : mesh.scalars) scalar = value;
+    mesh.scalars.front() = 0, mesh.scalars.back() = 1;
+    const TransferFunction peak({{0, {0.9, 0.7, 0}, 0}, {value, {0, 0, 1}, 3}, {1, {0.3, 0.9, 0.2}, 0.1}});
+    DeepImage deep;
+    FrameStatistics statistics;
+    Renderer(mesh, exact()).render(oblique(), small, peak, &statistics, &deep);
+    EXPECT_TRUE(statistics.on_lattice);
+    expect_tidy(deep);
+    EXPECT_LT(deep.samples.size(), 4u * small.width * small.height) << value;
+  }
 }
 
 TEST(Deep, IsMadeOnTheLatticeUnlessThatIsNotAccurateEnough) {
