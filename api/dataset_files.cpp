@@ -120,7 +120,8 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
   state->time_step = std::move(volume.time_step);
   state->samples = std::move(volume.source);
   api::complete_grid(*state);
-  if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, file.string());
+  state->clip = options.selection.clip;
+  if (!state->clip.empty()) api::clip_box(*state, file.string());
   return state;
 }
 
@@ -203,7 +204,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     const std::shared_ptr<Dataset::State> state =
         is_grid ? opened_grid(first, options, *transport) : opened_mesh(files, first, options, *transport, ranks);
     set_own_time(first, state->time_step);
-    if (auto note = scene::note_on(state->time_step, options.time_step))
+    if (auto note = scene::note_on(state->time_step, options.time_step.has_value()))
       state->notes.insert(state->notes.begin(), *std::move(note));
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());

@@ -95,7 +95,7 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
 }
 
-void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source) {
+void clip_box(Dataset::State& grid, const std::string& source) {
   const scene::GridGeometry& g = grid.samples->geometry();
   // The box of the grid as six tets around its diagonal.
   scene::TetMesh mesh;
@@ -111,7 +111,7 @@ void clip_box(Dataset::State& grid, const Selection& selection, const std::strin
   for (const auto& [first, second] : {std::array{1u, 3u}, {3u, 2u}, {2u, 6u}, {6u, 4u}, {4u, 5u}, {5u, 1u}})
     mesh.tets.push_back({0, first, second, 7});
   MeshCounts counts;
-  cells::select(mesh, {selection.clip}, counts, source);
+  cells::select(mesh, {grid.clip}, counts, source);
   cells::require_selected(counts, source);
   grid.facts.box = scene::bounds(mesh);
 }

@@ -14,8 +14,8 @@ namespace tessera::api {
 /// without files. `data` must outlive the result.
 frame::UncutMesh uncut_mesh(const Dataset::State& data);
 
-/// Reduces a grid's box to the bounding box of its part inside the half-spaces. Throws Error(bad_input) if nothing
+/// Reduces a grid's box to the bounding box of its part inside `grid.clip`. Throws Error(bad_input) if nothing
 /// remains.
-void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source);
+void clip_box(Dataset::State& grid, const std::string& source);
 
 }  // namespace tessera::api

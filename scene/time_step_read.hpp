@@ -48,13 +48,14 @@ inline std::vector<double> even_times(double first, double step, std::uint64_t c
   return times;
 }
 
-/// Returns the note about the time step; none if there is only one step.
-inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> requested) {
+/// Returns the note about the time step, which the user has requested or not; none if there is only one step.
+inline std::optional<std::string> note_on(const TimeStepRead& read, bool is_requested) {
   if (read.count <= 1) return std::nullopt;
   const std::string time =
       read.step < read.times.size() ? fmt::format(", time {:.6g}", read.times[read.step]) : std::string();
-  return fmt::format("time step {} of 0 to {}{}{}", read.step, read.count - 1, time,
-                     requested ? "" : ", which is the last and the default; `time_step` all shows all steps as a film");
+  return fmt::format(
+      "time step {} of 0 to {}{}{}", read.step, read.count - 1, time,
+      is_requested ? "" : ", which is the last and the default; `time_step` all shows all steps as a film");
 }
 
 }  // namespace tessera::scene

@@ -77,6 +77,17 @@ void add_piece(cells::MeshBlocks piece, const std::string& source, cells::MeshBl
   cells::add_notes(piece.surface_names, all.surface_names);
 }
 
+/// Returns the options that still apply after the blocks were read.
+ReadOptions options_after(const cells::MeshBlocks& read, ReadOptions options) {
+  if (read.fields.empty()) return options;
+  // The reader has already chosen the field.
+  options.smooth = false;
+  options.field.clear();
+  for (const cells::CellBlock& block : read.blocks)
+    for (const cells::BlockField& field : block.fields) options.field = field.name;
+  return options;
+}
+
 }  // namespace
 
 bool is_mesh(const InputFile& file) { return file.format != nullptr && file.format->read_mesh != nullptr; }
@@ -119,11 +130,7 @@ cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& o
   cells::require_blocks(options.blocks, read.block_names, source);
   cells::scale_points(read, options.axis_scale);  // the same scale for all pieces
   if (files.size() > 1) read.format = fmt::format("{} files: {}", files.size(), read.format);
-  ReadOptions rest = options;
-  if (!read.fields.empty()) {  // the reader has already chosen the field
-    rest.smooth = false;
-    rest.field = read.blocks.empty() || read.blocks.back().fields.empty() ? "" : read.blocks.back().fields.back().name;
-  }
+  const ReadOptions rest = options_after(read, options);
   return with_clean_errors(source, [&] {
     cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
