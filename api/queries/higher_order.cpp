@@ -76,12 +76,12 @@ class TetComparison {
   /// Compares few tets with those of a smaller tolerance; no value if `higher_order_tets` does not allow enough tets.
   [[nodiscard]] std::optional<double> by_finer(const Dataset& data, ReadOptions options) {
     constexpr std::uint64_t few = 1 << 16, most = 1 << 19, most_of_finer = 1 << 22;
-    constexpr double most_times = 64;
+    constexpr int most_times = 64;
     const HigherOrderCells& cells = data.higher_order_cells();
     if (cells.tets > most) return std::nullopt;
     if (options.higher_order_tets == default_higher_order_tets)
       options.higher_order_tets = std::min(few + 12 * cells.tets, most_of_finer);
-    for (double times = cells.tets <= few ? 4 : 2; times <= most_times; times *= 4) {
+    for (int times = cells.tets <= few ? 4 : 2; times <= most_times; times *= 4) {
       options.higher_order_tolerance = cells.tolerance / times;
       const Dataset finer = open_(options);
       const HigherOrderCells& of_finer = finer.higher_order_cells();
@@ -107,14 +107,14 @@ class TetComparison {
   [[nodiscard]] std::optional<double> by_coarser(const Dataset& data, ReadOptions options) {
     const HigherOrderCells& cells = data.higher_order_cells();
     std::optional<Dataset> coarser;
-    const auto has_half = [&](double times) {
+    const auto has_half = [&](int times) {
       options.higher_order_tolerance = times * cells.tolerance;
       coarser.emplace(open_(options));
       return 2 * coarser->higher_order_cells().tets <= cells.tets;
     };
-    constexpr double most_times = 64;
+    constexpr int most_times = 64;
     if (!has_half(most_times)) return std::nullopt;
-    double times = 4;
+    int times = 4;
     while (!has_half(times) && times < most_times) times *= 4;
     const Picture picture = draw(data, cells.position_error), rough = draw(*coarser, 0);
     const double rate = rate_of(times);
