@@ -73,11 +73,14 @@ inline double scalars_of_layers(double accuracy, double threshold, double bright
   return (accuracy - brightest * (lanes * (1 + 1.5 * depth) + float_picture)) / (1 + (1 + depth) / 2);
 }
 
-// Errors of deep images whose segments are cut at any depth, for `deep_accuracy`: pieces, merged pieces, and the
-// rounding of alpha.
+// Errors of deep images whose segments are cut at any depth, for `deep_accuracy`: pieces, merged pieces, the rounding
+// of alpha, and what is left out behind the end of a ray.
 constexpr double deep_pieces(double accuracy) { return accuracy / 2; }
 constexpr double deep_merging(double accuracy) { return accuracy / 4; }
 constexpr double deep_alpha(double accuracy) { return accuracy / 16; }
+constexpr double deep_ended(double accuracy) { return accuracy / 16; }
+/// The accuracy of the integrator for which ended() is deep_ended().
+constexpr double integrator_of_deep(double accuracy) { return 4 * deep_ended(accuracy); }
 
 // Total errors of the methods of rendering. `brightest` is the most light that a ray can have, at least one.
 constexpr double mesh_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
@@ -101,7 +104,7 @@ constexpr double grid_in_double(double accuracy, double brightest = 1) {
   return ended(accuracy) + precise_pieces(accuracy) + brightest * float_picture;
 }
 constexpr double deep(double accuracy) {
-  return deep_pieces(accuracy) + deep_merging(accuracy) + deep_alpha(accuracy) + float_picture;
+  return deep_pieces(accuracy) + deep_merging(accuracy) + deep_alpha(accuracy) + deep_ended(accuracy) + float_picture;
 }
 /// What is in front of a cut may have the error of an image, in its light and in its transmittance. Float lanes add
 /// `deep_lanes`.

@@ -178,6 +178,13 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
   return lattice_for(space, box, scalar_range, function, settings, frame);
 }
 
+scene::Integrator integrator_of(const Settings& settings, const FrameSettings& frame) {
+  scene::Integrator integrator = settings.integrator;
+  if (frame.deep && !frame.peel)
+    integrator.accuracy = std::min(integrator.accuracy, budget::integrator_of_deep(frame.deep_accuracy));
+  return integrator;
+}
+
 projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
                                         const scene::TransferFunction& function, scene::Emission emission,
                                         double longest_ray) {

@@ -36,11 +36,15 @@ std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, cons
                                        const scene::TransferFunction& function, const Settings& settings);
 
 /// Same as lattice_of() for a frame with these settings. Returns nothing for deep images and layers of independent
-/// emission or with surfaces (compositor/deep/), and for a `deep_accuracy` below 1.8e-4.
+/// emission or with surfaces (compositor/deep/), and for a `deep_accuracy` below 2.7e-4.
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                        const std::array<double, 2>& scalar_range,
                                        const scene::TransferFunction& function, const Settings& settings,
                                        const FrameSettings& frame);
+
+/// Returns the integrator of a frame with these settings. In a deep image, rays may end only where nothing behind can
+/// be seen through a cut, which may require a smaller accuracy than the image alone.
+scene::Integrator integrator_of(const Settings& settings, const FrameSettings& frame);
 
 /// Returns the limits by which single cells need double precision on this lattice. `longest_ray` is an upper bound of a
 /// ray's length in the whole mesh, world units.

@@ -42,11 +42,12 @@ struct Renderer::State {
     boundary = scene::with_threads(settings.threads, [&] { return boundary_faces(mesh); });
   }
 
-  /// Returns the integrator of this function. Its tables are kept until the function changes.
-  const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
-    if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
-      kept.emplace(f, settings.integrator, settings.emission);
+  /// Returns the integrator of this function. Its tables are kept until the function or the accuracy changes.
+  const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f, const scene::Integrator& how) {
+    if (!kept || !std::ranges::equal(f.knots(), function.knots()) || how.accuracy != accuracy) {
+      kept.emplace(f, how, settings.emission);
       function = f;
+      accuracy = how.accuracy;
     }
     return *kept;
   }
@@ -58,6 +59,7 @@ struct Renderer::State {
   projection::MeshNormals normals;
   std::optional<BoundaryFaces> boundary;  ///< if the settings have boundary surfaces
   scene::TransferFunction function;
+  double accuracy = 0;
   std::optional<integrals::SegmentIntegrator> kept;
 };
 
@@ -78,7 +80,10 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const Settings& settings = state_->settings;
   const FrameSettings& frame = state_->frame;
   const projection::PixelSpace space(camera, size);
-  const integrals::SegmentIntegrator& integrator = state_->integrator(transfer_function);
+  FrameSettings by_depth;
+  if (deep != nullptr) by_depth = {.deep = true, .deep_accuracy = frame.deep_accuracy, .peel = frame.peel};
+  const integrals::SegmentIntegrator& integrator =
+      state_->integrator(transfer_function, integrator_of(settings, by_depth));
   scene::Image image;
   scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
   const std::vector<projection::SurfaceFaces> faces =
@@ -103,8 +108,6 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     return std::make_unique<compositor::DeepSink>(scene, window, transfer_function, settings.emission,
                                                   frame.deep_accuracy, *collector);
   };
-  FrameSettings by_depth;
-  if (collector) by_depth = {.deep = true, .deep_accuracy = frame.deep_accuracy, .peel = frame.peel};
   const std::optional<FrameLattice> lattice =
       lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings, by_depth);
   const auto sink_on_lattice = [&]() -> std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> {

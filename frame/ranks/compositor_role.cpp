@@ -54,7 +54,7 @@ struct Frame {
         map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.render.ranks.tile_seed),
         collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
         space(job_of(run, number).camera, job_of(run, number).size),
-        integrator(run.function, run.settings.render.integrator, run.settings.render.emission),
+        integrator(run.function, integrator_of(run.settings.render, run.settings.frame), run.settings.render.emission),
         surfaces(run.settings.render.surfaces, run.function),
         light(light_of(run, job_of(run, number))),
         sender(run.transport, run.settings.roles.assembler(), number) {}

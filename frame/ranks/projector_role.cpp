@@ -65,7 +65,7 @@ class FrameSinks {
         deliver_(std::move(deliver)),
         cut_(exchange_budget(run.settings).cut),
         space_(job.camera, job.size),
-        integrator_(run.function, settings_.render.integrator, settings_.render.emission),
+        integrator_(run.function, integrator_of(settings_.render, settings_.frame), settings_.render.emission),
         surfaces_(settings_.render.surfaces, run.function),
         normals_(mesh.part),
         scene_{&space_, &integrator_, 1} {

@@ -175,6 +175,24 @@ TEST(Deep, KeepsItsPromiseForLitMatter) {
       }
 }
 
+TEST(Deep, NothingIsMissingBehindAnOpaqueRayOfACoarseImage) {
+  Settings coarse;
+  coarse.integrator.accuracy = 0.04;
+  for (const bool lattice : {true, false}) {
+    coarse.use.lattice = lattice;
+    DeepImage deep;
+    Renderer(datasets::cube(6), coarse)
+        .render(oblique(), small, datasets::scaled(datasets::smooth_knots(6), 20), nullptr, &deep);
+    double most = 0;  // of the light of a white object behind the ray that is seen
+    const Image whole =
+        Renderer(datasets::cube(6), exact()).render(oblique(), small, datasets::scaled(datasets::smooth_knots(6), 20));
+    for (std::size_t p = 0; p < whole.depth.size(); ++p)
+      most =
+          std::max(most, std::abs(tests::composited(deep.pixel(p), HUGE_VAL, {})[3] - double{whole.rgba[4 * p + 3]}));
+    EXPECT_LT(most, 1e-3);
+  }
+}
+
 // A colour of zero, computed from a slope, must not be slightly negative.
 TEST(Deep, SamplesOfAPureColorAreNotNegativeAndMerge) {
   for (const double value : {0.3, 0.37, 0.41, 0.477, 0.6}) {
