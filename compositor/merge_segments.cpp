@@ -98,7 +98,7 @@ class SegmentMerger : public TileMerger {
 
  private:
   scene::Image image_;
-  /// The samples of the tile, from the sinks of its squares.
+  /// Collects the samples of the tile from the sinks of its squares.
   struct Deep final : DeepTarget {
     explicit Deep(const scene::PixelRect& of)
         : tile(of), collector({of.width(), of.height()}, std::numeric_limits<std::uint64_t>::max()) {}

@@ -114,6 +114,8 @@ class TilePixels<sorting::LatticeEncoding> {
     if (!scene.integrator->is_exact()) rules_.integrator = scene.integrator;
   }
 
+  TilePixels(const TilePixels&) = delete;  // the rules refer to members
+  TilePixels& operator=(const TilePixels&) = delete;
   /// Also makes the deep samples of the pixels, in `samples`, which must outlive this object.
   TilePixels(const TileScene& scene, WindowSamples& samples) : TilePixels(scene, false) { rules_.samples = &samples; }
 

@@ -106,9 +106,8 @@ constexpr double grid_in_double(double accuracy, double brightest = 1) {
 constexpr double deep(double accuracy) {
   return deep_pieces(accuracy) + deep_merging(accuracy) + deep_alpha(accuracy) + deep_ended(accuracy) + float_picture;
 }
-/// What is in front of a cut may have the error of an image, in its light and in its transmittance. Float lanes add
-/// `deep_lanes`.
-constexpr double deep_lanes = 1e-6;
+constexpr double deep_lanes = 1e-6;  ///< rounding of pieces and samples in float lanes
+/// What is in front of a cut may have the error of an image, in its light and in its transmittance.
 constexpr double deep_on_lattice(double accuracy, double brightest = 1, bool shaded = false) {
   return deep(accuracy) + 2 * exact_mesh_on_lattice(brightest, shaded) + deep_lanes;
 }

@@ -90,15 +90,8 @@ class TetComparison {
       if (of_finer.tets < 2 * cells.tets && 4 * times <= most_times) continue;
       const Picture picture = draw(data, 0), exact = draw(finer, of_finer.position_error);
       const double rate = rate_of(times);
-      return largest([&] {
-        double error = 0;
-        for (std::size_t i = 0; i < picture.values.size(); ++i) {
-          const double by = std::abs(static_cast<double>(picture.values[i]) - exact.values[i]);
-          const double change = exact.change.empty() ? 0 : exact.change[i];
-          error = std::max({error, margin * by * rate / (rate - 1), by + change});
-        }
-        return error;
-      });
+      return largest(picture, exact, exact.change,
+                     [&](double by, double change) { return std::max(margin * by * rate / (rate - 1), by + change); });
     }
     return std::nullopt;
   }
@@ -118,15 +111,8 @@ class TetComparison {
     while (!has_half(times) && times < most_times) times *= 4;
     const Picture picture = draw(data, cells.position_error), rough = draw(*coarser, 0);
     const double rate = rate_of(times);
-    return largest([&] {
-      double error = 0;
-      for (std::size_t i = 0; i < picture.values.size(); ++i) {
-        const double by = std::abs(static_cast<double>(picture.values[i]) - rough.values[i]);
-        const double change = picture.change.empty() ? 0 : picture.change[i];
-        error = std::max({error, margin * by / (rate - 1), change});
-      }
-      return error;
-    });
+    return largest(picture, rough, picture.change,
+                   [&](double by, double change) { return std::max(margin * by / (rate - 1), change); });
   }
 
   /// Returns the factor by which errors decrease if the tolerance is divided by `times`. Rays may nearly touch the
@@ -151,15 +137,19 @@ class TetComparison {
     return picture;
   }
 
-  /// Returns the value that `found` has on the rank that assembles the image, on all ranks.
-  template <class Found>
-  [[nodiscard]] double largest(const Found& found) const {
+  /// Returns the largest error(difference, change) of the values of two images, the same on all ranks.
+  template <class Error>
+  [[nodiscard]] double largest(const Picture& a, const Picture& b, const std::vector<float>& change,
+                               const Error& error) const {
     const int assembler =
         assign_roles(communicator_.size(), settings_.ranks.projectors, settings_.ranks.compositors).assembler();
-    const double value = communicator_.rank() == assembler ? found() : 0.0;
-    if (communicator_.size() == 1) return value;
+    double most = 0;
+    for (std::size_t i = 0; i < a.values.size() && communicator_.rank() == assembler; ++i)
+      most = std::max(most, error(std::abs(static_cast<double>(a.values[i]) - b.values[i]),
+                                  change.empty() ? 0.0 : static_cast<double>(change[i])));
+    if (communicator_.size() == 1) return most;
     const auto transport = StateAccess::of(communicator_).connect();
-    return exchange::broadcast_value(*transport, assembler, exchange::MessageKind::higher_order, value);
+    return exchange::broadcast_value(*transport, assembler, exchange::MessageKind::higher_order, most);
   }
 
   const std::function<Dataset(const ReadOptions&)>& open_;

@@ -2,7 +2,7 @@
 // Cuts the segments of windows' rows into pieces, and merges the pieces of each pixel into deep samples. Included once
 // per instruction set (Highway's include guard idiom).
 //
-// What      The input is rows of sorted and integrated segments, one pixel per lane (window_light-inl.h). Pieces are
+// What      The input is rows of sorted and integrated segments, one pixel per lane (window_rows-inl.h). Pieces are
 //           those of PieceCutter (compositor/deep/deep_pieces.hpp), and samples are those of DeepMerger
 //           (compositor/deep/deep_fragments.hpp), for absorption without surfaces.
 // How       Each pass of the loop over a row takes one piece of every lane's segment: up to the next knot of the
@@ -70,7 +70,7 @@ class SampleLanes {
     // Samples do not overlap.
     piece.front = IfThenElse(And(takes, begun_), IfThenElse(continues, back_, Max(piece.front, back_)), piece.front);
     piece.back = Max(piece.back, piece.front);
-    for (VF& color : piece.color) color = Max(color, Zero(DF()));  // rounding may make a color of zero negative
+    for (VF& color : piece.color) color = Max(color, Zero(DF()));  // rounding may make a colour of zero negative
     const MI extended = extend(And(continues, back_ > front_), piece);
     const MI begins = AndNot(extended, takes);
     if (AllFalse(d, begins)) return;

@@ -26,9 +26,8 @@ namespace tessera::frame {
 ///   - there are both triangle surfaces and iso-surfaces: where they nearly touch, the lattice cannot resolve their
 ///     order;
 ///   - there are surfaces, and the rounding of depths or of the cosine in their light exceeds the error;
-///   - the integrator is neither exact nor automatic, and the function has steps, to which it does not round scalars,
-///   or
-///     there are devices;
+///   - the integrator is neither exact nor automatic, and there are devices, or the function has steps: such an
+///     integrator uses the function as given, while scalars are rounded, so they may be on the wrong side of a step;
 ///   - the lattice is switched off, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or Highway only emulates lanes on this processor.
 std::optional<FrameLattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,

@@ -20,12 +20,11 @@ namespace tessera::io {
 cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {});
 
 /// Reads several files as the pieces of one mesh; their points are not merged. Each file must have the chosen field.
-/// Throws like read_mesh.
+/// All pieces have the same axis scale. Throws like read_mesh.
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options = {});
 
 /// The cells of a file's chosen blocks before they are split, and the names of all its blocks. Throws like read_mesh,
-/// with two differences: it accepts a file without cells, and the error for an unknown block may quote arbitrary bytes
-/// of the file's name.
+/// but accepts a file without cells.
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options);
 
 /// Returns the number of time steps of a mesh file and their times. Does not read the mesh if the format stores the

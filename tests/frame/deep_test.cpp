@@ -193,7 +193,7 @@ TEST(Deep, NothingIsMissingBehindAnOpaqueRayOfACoarseImage) {
   }
 }
 
-// A colour of zero, computed from a slope, must not be slightly negative.
+// A colour of zero that is computed from a slope must not become slightly negative.
 TEST(Deep, SamplesOfAPureColorAreNotNegativeAndMerge) {
   for (const double value : {0.3, 0.37, 0.41, 0.477, 0.6}) {
     scene::TetMesh mesh = datasets::cube(5);
